@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+#include "arrays.hpp"
+#include "module.hpp"
+#include "pectinate/tubes.hpp"
+
+namespace pectinate::bindings {
+
+void bind_tubes(py::module_& module) {
+  py::class_<Tubes>(module, "Tubes")
+      .def_property_readonly("vertices", viewed<Tubes>(&Tubes::vertices))
+      .def_property_readonly("triangles", viewed<Tubes>(&Tubes::triangles))
+      .def_property_readonly("vertex_offsets", viewed<Tubes>(&Tubes::vertex_offsets))
+      .def_property_readonly("triangle_offsets", viewed<Tubes>(&Tubes::triangle_offsets));
+  const TubeOptions defaults;
+  module.def(
+      "make_tubes",
+      [](const SurfaceMesh& mesh, const Placement& placement, double radius, double taper_length, int side_count) {
+        const py::gil_scoped_release release;
+        return make_tubes(mesh, placement, {radius, taper_length, side_count});
+      },
+      py::arg("mesh"), py::arg("placement"), py::kw_only(), py::arg("radius") = defaults.radius,
+      py::arg("taper_length") = defaults.taper_length, py::arg("side_count") = defaults.side_count);
+}
+
+}  // namespace pectinate::bindings

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "pectinate/placement.hpp"
+#include "pectinate/surface_mesh.hpp"
+#include "pectinate/types.hpp"
+
+namespace pectinate {
+
+struct TubeOptions {
+  double radius = 0.18;         ///< rho_0, unit of the mesh, > 0
+  double taper_length = 2.0;    ///< lambda, unit of the mesh, >= 0; 0 gives blunt ends
+  int side_count = 8;           ///< in [3, 12]
+};
+
+/// Closed triangle meshes, one per streamline, one after the other; counter-clockwise seen from outside.
+struct Tubes {
+  std::vector<Vec3> vertices;
+  std::vector<Triangle> triangles;
+  std::vector<std::int64_t> vertex_offsets;    ///< streamline count + 1
+  std::vector<std::int64_t> triangle_offsets;  ///< streamline count + 1
+};
+
+/// Regular polygons extruded along the streamlines with the radius of the paper's equation (3),
+/// rho(s) = rho_0 (1 - exp(-s / lambda)) (1 - exp(-(L - s) / lambda)), aligned by the surface normals (section 2.8).
+/// Each tube is watertight. Throws InvalidOption.
+Tubes make_tubes(const SurfaceMesh& mesh, const Placement& placement, const TubeOptions& options = {});
+
+}  // namespace pectinate

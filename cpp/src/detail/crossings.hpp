@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pectinate/orientation_field.hpp"
+#include "pectinate/surface_mesh.hpp"
+#include "pectinate/tracing.hpp"
+
+namespace pectinate::detail {
+
+/// A side's part in the chords of its triangle. Across the field the three corners lie in the order low, middle, high:
+/// every chord crosses the side low-high and one of the others.
+enum Role : std::int8_t { low_high = 0, low_middle = 1, middle_high = 2 };
+
+/// What lies beyond a side.
+struct Exit {
+  std::int32_t edge;
+  std::int32_t triangle;   ///< -1 where streamlines stop
+  Role role;               ///< of this side in that triangle
+  StopReason stop_reason;  ///< where there is no triangle to go on to
+  bool reversed;           ///< the chord coordinate runs against the edge
+};
+
+/// A triangle's precomputed crossings (paper section 2.4). A chord has the coordinate s in (0, 1) at which it crosses
+/// the side low-high; it leaves through low-middle where s < split, through middle-high where s > split. `split` is
+/// the paper's critical coordinate s_c of that side.
+struct TriangleCrossings {
+  double split = 0;
+  double longest_chord = 0;  ///< through the middle corner
+  double width = 0;          ///< across the field, from the low corner to the high one
+  std::array<Exit, 3> exits{};  ///< by Role
+};
+
+/// Crossings of all triangles; those of triangles without a direction are meaningless.
+std::vector<TriangleCrossings> make_crossings(const SurfaceMesh& mesh, const OrientationField& field,
+                                              double abrupt_turn_angle);
+
+/// The part of triangle side `side` in the chords, given the corner that lies in the middle.
+inline Role role_of(int side, int middle) { return std::array{low_middle, low_high, middle_high}[(side - middle + 3) % 3]; }
+
+/// The position along its edge at which a chord crosses a side, and the chord that starts at such a position.
+double edge_position(const TriangleCrossings& crossings, Role role, double chord);
+double chord_coordinate(const TriangleCrossings& crossings, Role role, double edge_position);
+
+inline double chord_length(const TriangleCrossings& crossings, double chord) {
+  return crossings.longest_chord *
+         (chord < crossings.split ? chord / crossings.split : (1 - chord) / (1 - crossings.split));
+}
+
+}  // namespace pectinate::detail

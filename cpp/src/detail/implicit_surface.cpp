@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+#include "detail/implicit_surface.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace pectinate::detail {
+
+namespace {
+
+constexpr int max_newton_steps = 20;
+constexpr double on_surface = 1e-12;
+
+Vector newton_step(const Sample& at, const Vector& direction) {
+  return -at.value / direction.squaredNorm() * direction;
+}
+
+}  // namespace
+
+// Taubin's distance F / |grad F|, regularised: the true distance to an ellipsoid needs a root finder, and a factor
+// between both does not matter here. The regularisation keeps the centre finite.
+Sample sample(const Ellipsoid& ellipsoid, const Vector& point) {
+  const Vector scaled = (point - ellipsoid.centre).cwiseQuotient(ellipsoid.radii);
+  const Vector half_gradient = scaled.cwiseQuotient(ellipsoid.radii);
+  const Vector curvature_term = half_gradient.cwiseQuotient(ellipsoid.radii).cwiseQuotient(ellipsoid.radii);
+  const double level = (scaled.squaredNorm() - 1) / 2;
+  const double slope = std::sqrt(half_gradient.squaredNorm() + 1e-9);
+  return {level / slope, half_gradient / slope - level / (slope * slope * slope) * curvature_term};
+}
+
+Sample sample(const RoundCone& cone, const Vector& point) {
+  const Vector axis = cone.axis();
+  const double length = (cone.end - cone.start).norm();
+  const double sine = (cone.start_radius - cone.end_radius) / length;
+  const double cosine = std::sqrt(1 - sine * sine);
+
+  const Vector from_start = point - cone.start;
+  const double along = axis.dot(from_start);
+  const Vector radial = from_start - along * axis;
+  const double across = radial.norm();
+  const double foot = along * cosine - across * sine;
+  const auto sphere = [&](const Vector& centre, double radius) {
+    const double distance = (point - centre).norm();
+    return Sample{distance - radius, (point - centre) / std::max(distance, 1e-9)};
+  };
+  if (foot < 0) return sphere(cone.start, cone.start_radius);
+  if (foot > cosine * length) return sphere(cone.end, cone.end_radius);
+  return {across * cosine + along * sine - cone.start_radius,
+          cosine / std::max(across, 1e-9) * radial + sine * axis};
+}
+
+Sample smooth_union(const Sample& a, const Sample& b, double width) {
+  const auto& [inner, outer] = a.value < b.value ? std::tie(a, b) : std::tie(b, a);
+  const double h = std::max(1 - (outer.value - inner.value) / width, 0.0);
+  return {inner.value - h * h * h * width / 6, inner.gradient + h * h / 2 * (outer.gradient - inner.gradient)};
+}
+
+Vector project(const ImplicitSurface& surface, const Vector& point) {
+  Vector moved = point;
+  for (int step = 0; step < max_newton_steps; ++step) {
+    const Sample at = surface.function(moved);
+    if (std::abs(at.value) < on_surface) break;
+    moved += newton_step(at, at.gradient);
+  }
+  return moved;
+}
+
+Vector project_to_border(const ImplicitSurface& surface, const PlanarCut& cut, const Vector& point) {
+  Vector moved = point;
+  for (int step = 0; step < max_newton_steps; ++step) {
+    moved -= cut.height(moved) * cut.normal;
+    const Sample at = surface.function(moved);
+    if (std::abs(at.value) < on_surface) break;
+    moved += newton_step(at, at.gradient - cut.normal.dot(at.gradient) * cut.normal);
+  }
+  return moved;
+}
+
+}  // namespace pectinate::detail

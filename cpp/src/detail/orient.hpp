@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "pectinate/surface_mesh.hpp"
+
+namespace pectinate::detail {
+
+/// Joined triangles, and how to wind them.
+struct Orientation {
+  std::vector<std::int32_t> triangle_components;
+  std::vector<bool> orientable;  ///< per component
+  std::vector<bool> reverse;     ///< per triangle: its winding must be reversed
+};
+
+/// Finds the components and the reversals that make neighbours agree, against as few input windings as possible.
+/// Where a component is not orientable, neighbours disagree along a seam.
+Orientation find_orientation(const std::vector<Triangle>& triangles,
+                             const std::vector<std::array<SideNeighbour, 3>>& neighbours);
+
+/// For each component: do its normals point inwards? Told by the volume under it, with its openings closed by fans;
+/// never for non-orientable or (nearly) flat ones.
+std::vector<bool> points_inwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
+                                 const std::vector<std::array<SideNeighbour, 3>>& neighbours,
+                                 const Orientation& orientation, const std::vector<BoundaryLoop>& loops);
+
+}  // namespace pectinate::detail

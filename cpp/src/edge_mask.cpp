@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include "detail/edge_point.hpp"
+#include "detail/edge_search.hpp"
+#include "detail/random.hpp"
+#include "detail/weighted_set.hpp"
+#include "pectinate/occupancy.hpp"
+
+namespace pectinate {
+namespace {
+
+constexpr int bit_count = 64;
+/// Edge lengths become whole numbers for exact drawing: the mean length is this much.
+constexpr double weight_of_mean_length = 4096;
+
+std::uint64_t bit_at(double position) {
+  return std::uint64_t{1} << std::clamp(static_cast<int>(position * bit_count), 0, bit_count - 1);
+}
+
+/// The bits of all sub-segments that an interval touches.
+std::uint64_t bits_of(const detail::Interval& interval) {
+  const std::uint64_t from_low = ~(bit_at(interval.low) - 1);
+  const std::uint64_t up_to_high = bit_at(interval.high) | (bit_at(interval.high) - 1);
+  return from_low & up_to_high;
+}
+
+/// The index of the n-th set bit.
+int nth_set_bit(std::uint64_t bits, std::uint64_t n) {
+  for (; n > 0; --n) bits &= bits - 1;
+  return std::countr_zero(bits);
+}
+
+std::vector<std::uint64_t> whole_weights(const SurfaceMesh& mesh, const StreamlineTracer& tracer) {
+  const auto& lengths = mesh.edge_lengths();
+  double total = 0;
+  for (const double length : lengths) total += length;
+  const double scale = weight_of_mean_length * static_cast<double>(lengths.size()) / total;
+  std::vector<std::uint64_t> weights;
+  weights.reserve(lengths.size());
+  for (std::size_t e = 0; e < lengths.size(); ++e) {
+    const bool can_start = tracer.start_triangle(static_cast<std::int32_t>(e)).has_value();
+    weights.push_back(can_start ? std::max<std::uint64_t>(1, std::llround(lengths[e] * scale)) : 0);
+  }
+  return weights;
+}
+
+class EdgeMask final : public Occupancy {
+ public:
+  EdgeMask(const SurfaceMesh& mesh, const StreamlineTracer& tracer)
+      : separation_distance_(tracer.options().separation_distance),
+        search_(mesh),
+        weights_(whole_weights(mesh, tracer)),
+        occupied_(weights_.size(), 0),
+        retired_(weights_.size(), 0),
+        partly_free_(weights_.size()),
+        wholly_free_(weights_.size()) {
+    for (std::size_t e = 0; e < weights_.size(); ++e) {
+      total_weight_ += bit_count * weights_[e];
+      update(static_cast<std::int32_t>(e));
+    }
+  }
+
+  bool admits(std::int32_t, const EdgePoint& point) const override {
+    return !(occupied_[point.edge] & bit_at(point.position));
+  }
+
+  bool admits_seed(const EdgePoint& seed) const override { return free_bits(seed.edge) & bit_at(seed.position); }
+
+  void add(const Streamline& streamline) override {
+    for (std::size_t segment = 0; segment < streamline.triangles.size(); ++segment) {
+      for (const auto& [edge, interval] : search_.near_segment(streamline, segment, separation_distance_)) {
+        const std::uint64_t added = bits_of(interval) & ~occupied_[edge];
+        if (!added) continue;
+        occupied_[edge] |= added;
+        occupied_weight_ += std::popcount(added) * weights_[edge];
+        update(edge);
+      }
+    }
+  }
+
+  void retire_seed(const EdgePoint& seed) override {
+    retired_[seed.edge] |= bit_at(seed.position);
+    update(seed.edge);
+  }
+
+  std::optional<EdgePoint> draw_seed(SeedRegion region, Random& random) const override {
+    const std::uint64_t partly = region == SeedRegion::wholly_free ? 0 : partly_free_.total();
+    const std::uint64_t wholly = region == SeedRegion::partly_free ? 0 : wholly_free_.total();
+    if (partly + wholly == 0) return std::nullopt;
+    const std::uint64_t offset = random.below(partly + wholly);
+    const auto edge = static_cast<std::int32_t>(offset < partly ? partly_free_.find(offset)
+                                                                : wholly_free_.find(offset - partly));
+    const std::uint64_t bits = free_bits(edge);
+    const int bit = nth_set_bit(bits, random.below(static_cast<std::uint64_t>(std::popcount(bits))));
+    return EdgePoint{edge, detail::clamp_position((bit + random.unit()) / bit_count)};
+  }
+
+  double coverage() const override {
+    return static_cast<double>(occupied_weight_) / static_cast<double>(total_weight_);
+  }
+
+ private:
+  std::uint64_t free_bits(std::int32_t edge) const { return ~(occupied_[edge] | retired_[edge]); }
+
+  void update(std::int32_t edge) {
+    const std::uint64_t free_weight = static_cast<std::uint64_t>(std::popcount(free_bits(edge))) * weights_[edge];
+    const bool untouched = occupied_[edge] == 0;
+    partly_free_.set(edge, untouched ? 0 : free_weight);
+    wholly_free_.set(edge, untouched ? free_weight : 0);
+  }
+
+  double separation_distance_;
+  detail::EdgeSearch search_;
+  std::vector<std::uint64_t> weights_;  // per sub-segment of each edge; 0 where no streamline can start
+  std::vector<std::uint64_t> occupied_, retired_;
+  detail::WeightedSet partly_free_, wholly_free_;
+  std::uint64_t total_weight_ = 0, occupied_weight_ = 0;
+};
+
+}  // namespace
+
+std::unique_ptr<Occupancy> make_edge_mask(const SurfaceMesh& mesh, const StreamlineTracer& tracer) {
+  return std::make_unique<EdgeMask>(mesh, tracer);
+}
+
+}  // namespace pectinate

@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+#include "pectinate/orientation_field.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "detail/vec.hpp"
+#include "pectinate/errors.hpp"
+
+namespace pectinate {
+namespace {
+
+using detail::Vector;
+using detail::vector;
+
+/// Below this share of the input nothing meaningful is left in the plane.
+constexpr double least_share = 1e-9;
+
+struct Direction {
+  DirectionStatus status;
+  Vector unit = Vector::Zero();
+  double out_of_plane_angle = 0;
+};
+
+/// A triangle's plane, spanned by its first side and the direction to the left of it.
+struct Plane {
+  std::array<Vector, 3> sides;
+  Vector normal, along, across;
+};
+
+Plane plane_of(const SurfaceMesh& mesh, std::size_t t) {
+  const auto& [a, b, c] = mesh.triangles()[t];
+  const auto at = [&](std::int32_t v) { return vector(mesh.vertices()[v]); };
+  Plane plane{{at(b) - at(a), at(c) - at(b), at(a) - at(c)}, vector(mesh.triangle_normals()[t]), {}, {}};
+  plane.along = plane.sides[0].normalized();
+  plane.across = plane.normal.cross(plane.along);
+  return plane;
+}
+
+/// The sign of a line is free: this one depends on the triangle's own sides only, so that neither the input's sign
+/// nor a rotation of the mesh shows in the result.
+Vector with_canonical_sign(const Vector& direction, const Plane& plane) {
+  double greatest = 0;
+  for (const auto& side : plane.sides) {
+    const double product = side.dot(direction);
+    if (std::abs(product) > std::abs(greatest)) greatest = product;
+  }
+  return greatest < 0 ? Vector(-direction) : direction;
+}
+
+Direction from_vector(const Vec3& input, const Plane& plane) {
+  const Vector v = vector(input);
+  if (!v.allFinite()) return {DirectionStatus::non_finite};
+  const double scale = v.cwiseAbs().maxCoeff();
+  if (scale == 0) return {DirectionStatus::zero};
+  const Vector unit = (v / scale).normalized();
+  const double height = unit.dot(plane.normal);
+  const Vector in_plane = unit - height * plane.normal;
+  const double share = in_plane.norm();
+  if (share <= least_share) return {DirectionStatus::normal};
+  return {DirectionStatus::valid, with_canonical_sign(in_plane / share, plane), std::atan2(std::abs(height), share)};
+}
+
+/// A symmetric tensor in a triangle's plane: t_uu - t_vv and 2 t_uv turn twice as fast as its principal direction.
+struct PlaneTensor {
+  double difference = 0, shear = 0, trace = 0, size = 0;
+
+  void add_line(const Vector& unit, const Plane& plane) {
+    const double u = unit.dot(plane.along), v = unit.dot(plane.across);
+    difference += u * u - v * v;
+    shear += 2 * u * v;
+    trace += u * u + v * v;
+    size += 1;
+  }
+
+  void add_tensor(const SymmetricTensor& t, const Plane& plane) {
+    Eigen::Matrix3d full;
+    full << t[0], t[3], t[5], t[3], t[1], t[4], t[5], t[4], t[2];
+    const double scale = full.cwiseAbs().maxCoeff();
+    full /= scale;
+    const double uu = plane.along.dot(full * plane.along), vv = plane.across.dot(full * plane.across);
+    difference += uu - vv;
+    shear += 2 * plane.along.dot(full * plane.across);
+    trace += std::abs(uu) + std::abs(vv);
+    size += full.norm();
+  }
+
+  Direction principal(const Plane& plane) const {
+    const double magnitude = std::hypot(difference, shear);
+    if (trace <= least_share * size && magnitude <= least_share * size) return {DirectionStatus::normal};
+    if (magnitude <= least_share * size) return {DirectionStatus::isotropic};
+    const double angle = std::atan2(shear, difference) / 2;
+    const Vector unit = std::cos(angle) * plane.along + std::sin(angle) * plane.across;
+    return {DirectionStatus::valid, with_canonical_sign(unit, plane)};
+  }
+};
+
+DirectionStatus status_of(std::span<const double> numbers) {
+  if (!std::all_of(numbers.begin(), numbers.end(), [](double x) { return std::isfinite(x); })) {
+    return DirectionStatus::non_finite;
+  }
+  return std::all_of(numbers.begin(), numbers.end(), [](double x) { return x == 0; }) ? DirectionStatus::zero
+                                                                                      : DirectionStatus::valid;
+}
+
+void add(PlaneTensor& sum, const Vec3& v, const Plane& plane) {
+  sum.add_line((vector(v) / vector(v).cwiseAbs().maxCoeff()).normalized(), plane);
+}
+void add(PlaneTensor& sum, const SymmetricTensor& t, const Plane& plane) { sum.add_tensor(t, plane); }
+
+/// The line average of the valid ones among some inputs.
+template <class Input>
+Direction average(std::span<const Input> inputs, const Plane& plane) {
+  PlaneTensor sum;
+  auto worst = DirectionStatus::zero;
+  bool any = false;
+  for (const auto& input : inputs) {
+    const auto status = status_of(input);
+    if (status == DirectionStatus::valid) {
+      add(sum, input, plane);
+      any = true;
+    } else {
+      worst = std::max(worst, status);
+    }
+  }
+  return any ? sum.principal(plane) : Direction{worst};
+}
+
+void check_count(std::size_t given, std::size_t expected, const char* per) {
+  if (given == expected) return;
+  throw InvalidField("the field has " + std::to_string(given) + " rows, but the input mesh has " +
+                     std::to_string(expected) + " " + per + "; give one row for each, dropped ones included");
+}
+
+template <class Input>
+std::array<Input, 3> at_corners(const SurfaceMesh& mesh, std::size_t t, std::span<const Input> per_vertex) {
+  const auto& [a, b, c] = mesh.triangles()[t];
+  const auto& input = mesh.input_vertex();
+  return {per_vertex[input[a]], per_vertex[input[b]], per_vertex[input[c]]};
+}
+
+struct Directions {
+  std::vector<Vec3> units;
+  std::vector<DirectionStatus> status;
+  std::vector<double> out_of_plane_angles;
+};
+
+/// What `direct(t, plane)` says of every triangle.
+template <class Direct>
+Directions direct_all(const SurfaceMesh& mesh, const Direct& direct) {
+  Directions all;
+  all.units.reserve(mesh.triangle_count());
+  all.status.reserve(mesh.triangle_count());
+  all.out_of_plane_angles.reserve(mesh.triangle_count());
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const Direction result = direct(t, plane_of(mesh, t));
+    all.units.push_back(detail::vec3(result.unit));
+    all.status.push_back(result.status);
+    all.out_of_plane_angles.push_back(result.out_of_plane_angle);
+  }
+  if (std::find(all.status.begin(), all.status.end(), DirectionStatus::valid) == all.status.end()) {
+    throw InvalidField("no triangle has a direction: all vectors are zero, not finite or perpendicular to the "
+                       "surface; check which array was read");
+  }
+  return all;
+}
+
+/// Averages the inputs at the corners of every triangle.
+template <class Input>
+Directions average_corners(const SurfaceMesh& mesh, std::span<const Input> inputs) {
+  check_count(inputs.size(), mesh.input_vertex_count(), "vertices");
+  return direct_all(mesh, [&](std::size_t t, const Plane& plane) {
+    return average<Input>(at_corners(mesh, t, inputs), plane);
+  });
+}
+
+}  // namespace
+
+OrientationField::OrientationField(std::vector<Vec3> directions, std::vector<DirectionStatus> status,
+                                   std::vector<double> out_of_plane_angles)
+    : directions_(std::move(directions)),
+      status_(std::move(status)),
+      out_of_plane_angles_(std::move(out_of_plane_angles)) {}
+
+OrientationField OrientationField::from_triangle_vectors(const SurfaceMesh& mesh, std::span<const Vec3> vectors) {
+  check_count(vectors.size(), mesh.input_triangle_count(), "triangles");
+  auto [units, status, angles] = direct_all(mesh, [&](std::size_t t, const Plane& plane) {
+    return from_vector(vectors[mesh.input_triangle()[t]], plane);
+  });
+  return {std::move(units), std::move(status), std::move(angles)};
+}
+
+OrientationField OrientationField::from_vertex_vectors(const SurfaceMesh& mesh, std::span<const Vec3> vectors) {
+  auto [units, status, angles] = average_corners(mesh, vectors);
+  return {std::move(units), std::move(status), std::move(angles)};
+}
+
+OrientationField OrientationField::from_triangle_tensors(const SurfaceMesh& mesh,
+                                                         std::span<const SymmetricTensor> tensors) {
+  check_count(tensors.size(), mesh.input_triangle_count(), "triangles");
+  auto [units, status, angles] = direct_all(mesh, [&](std::size_t t, const Plane& plane) {
+    return average<SymmetricTensor>({&tensors[mesh.input_triangle()[t]], 1}, plane);
+  });
+  return {std::move(units), std::move(status), std::move(angles)};
+}
+
+OrientationField OrientationField::from_vertex_tensors(const SurfaceMesh& mesh,
+                                                       std::span<const SymmetricTensor> tensors) {
+  auto [units, status, angles] = average_corners(mesh, tensors);
+  return {std::move(units), std::move(status), std::move(angles)};
+}
+
+std::size_t OrientationField::count(DirectionStatus status) const {
+  return static_cast<std::size_t>(std::count(status_.begin(), status_.end(), status));
+}
+
+}  // namespace pectinate

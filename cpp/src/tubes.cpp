@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+#include "pectinate/tubes.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "detail/vec.hpp"
+#include "pectinate/errors.hpp"
+
+namespace pectinate {
+namespace {
+
+using detail::Vector;
+using detail::vector;
+
+/// Rings closer than this share of the radius would cross each other at every bend.
+constexpr double least_ring_spacing = 0.1;
+
+/// Where a tube has a ring, or an end.
+struct Station {
+  Vector place, tangent, normal;  // normal: of the surface
+  double arc;
+};
+
+struct PolylinePoint {
+  Vector place, normal;
+  double arc;
+};
+
+void check(const TubeOptions& options) {
+  if (!(options.radius > 0) || !std::isfinite(options.radius)) {
+    throw InvalidOption("tube radius is " + std::to_string(options.radius) + ", but must be positive and finite");
+  }
+  if (!(options.taper_length >= 0) || !std::isfinite(options.taper_length)) {
+    throw InvalidOption("taper_length is " + std::to_string(options.taper_length) +
+                        ", but must be finite and not negative; 0 gives blunt ends");
+  }
+  if (options.side_count < 3 || options.side_count > 12) {
+    throw InvalidOption("side_count is " + std::to_string(options.side_count) + ", but must be in [3, 12]");
+  }
+}
+
+/// Equation (3) of the paper; blunt where the taper length is 0.
+double tube_radius(const TubeOptions& options, double arc, double length) {
+  if (options.taper_length == 0) return options.radius;
+  const auto rise = [&](double s) { return -std::expm1(-s / options.taper_length); };
+  return options.radius * rise(arc) * rise(length - arc);
+}
+
+/// The points of streamline `i` with the normals of the surface beside them.
+std::vector<PolylinePoint> polyline(const SurfaceMesh& mesh, const Placement& placement, std::size_t i) {
+  const auto first = placement.offsets[i], last = placement.offsets[i + 1] - 1;
+  const auto normal_of = [&](std::int64_t segment) {
+    return vector(mesh.triangle_normals()[placement.segment_triangles[segment - static_cast<std::int64_t>(i)]]);
+  };
+  std::vector<PolylinePoint> points;
+  for (auto p = first; p <= last; ++p) {
+    const Vector place = vector(placement.points[p]);
+    const Vector before = normal_of(std::max(p - 1, first)), after = normal_of(std::min(p, last - 1));
+    // Neighbours of a surface that cannot be oriented may disagree on their side.
+    const Vector normal = before.dot(after) < 0 ? Vector(before - after) : Vector(before + after);
+    const double arc = p == first ? 0 : points.back().arc + (place - points.back().place).norm();
+    points.push_back({place, normal, arc});
+  }
+  return points;
+}
+
+/// Fills long segments so that the taper is followed, and leaves out points too close for rings. The two ends stay.
+std::vector<PolylinePoint> resample(const std::vector<PolylinePoint>& points, const TubeOptions& options) {
+  const double length = points.back().arc;
+  const double shortest = std::min(least_ring_spacing * options.radius, length / 4);
+  const double longest = options.taper_length > 0 ? std::min(options.taper_length / 2, length / 2) : length;
+  std::vector<PolylinePoint> kept{points.front()};
+  for (std::size_t p = 1; p < points.size(); ++p) {
+    const bool is_last = p + 1 == points.size();
+    if (!is_last && (points[p].arc - kept.back().arc < shortest || length - points[p].arc < shortest)) continue;
+    const auto from = kept.back();
+    const auto pieces = static_cast<int>(std::ceil((points[p].arc - from.arc) / longest - 1e-9));
+    for (int k = 1; k < pieces; ++k) {
+      const double w = static_cast<double>(k) / pieces;
+      kept.push_back({(1 - w) * from.place + w * points[p].place, (1 - w) * from.normal + w * points[p].normal,
+                      (1 - w) * from.arc + w * points[p].arc});
+    }
+    kept.push_back(points[p]);
+  }
+  return kept;
+}
+
+std::vector<Station> stations(const std::vector<PolylinePoint>& points) {
+  std::vector<Station> result;
+  for (std::size_t p = 0; p < points.size(); ++p) {
+    const auto& before = points[p == 0 ? 0 : p - 1];
+    const auto& after = points[std::min(p + 1, points.size() - 1)];
+    const Vector arriving = (points[p].place - before.place).stableNormalized();
+    const Vector leaving = (after.place - points[p].place).stableNormalized();
+    Vector tangent = arriving + leaving;
+    if (tangent.norm() < 1e-6) tangent = leaving;  // a U-turn has no bisector
+    tangent.normalize();
+    Vector normal = points[p].normal - points[p].normal.dot(tangent) * tangent;
+    if (normal.norm() < 1e-6 * points[p].normal.norm() || normal.norm() == 0) normal = tangent.unitOrthogonal();
+    normal.normalize();
+    if (!result.empty() && normal.dot(result.back().normal) < 0) normal = -normal;
+    result.push_back({points[p].place, tangent, normal, points[p].arc});
+  }
+  return result;
+}
+
+/// Appends one tube to the rest.
+class TubeBuilder {
+ public:
+  TubeBuilder(Tubes& tubes, const TubeOptions& options) : tubes_(tubes), options_(options) {}
+
+  void add(const std::vector<Station>& stations) {
+    const double length = stations.back().arc;
+    const bool blunt = options_.taper_length == 0;
+    const auto start = add_vertex(stations.front().place);
+    std::int32_t ring = -1;
+    for (std::size_t i = blunt ? 0 : 1; i < stations.size() - (blunt ? 0 : 1); ++i) {
+      const auto next = add_ring(stations[i], tube_radius(options_, stations[i].arc, length));
+      ring < 0 ? close(start, next, true) : join(ring, next);
+      ring = next;
+    }
+    close(add_vertex(stations.back().place), ring, false);
+    tubes_.vertex_offsets.push_back(static_cast<std::int64_t>(tubes_.vertices.size()));
+    tubes_.triangle_offsets.push_back(static_cast<std::int64_t>(tubes_.triangles.size()));
+  }
+
+ private:
+  std::int32_t add_vertex(const Vector& place) {
+    tubes_.vertices.push_back(detail::vec3(place));
+    return static_cast<std::int32_t>(tubes_.vertices.size()) - 1;
+  }
+
+  std::int32_t add_ring(const Station& station, double radius) {
+    const auto first = static_cast<std::int32_t>(tubes_.vertices.size());
+    const Vector side = station.tangent.cross(station.normal);
+    for (int k = 0; k < options_.side_count; ++k) {
+      const double angle = 2 * std::numbers::pi * k / options_.side_count;
+      add_vertex(station.place + radius * (std::cos(angle) * station.normal + std::sin(angle) * side));
+    }
+    return first;
+  }
+
+  void join(std::int32_t ring, std::int32_t next) {
+    for (int k = 0; k < options_.side_count; ++k) {
+      const int l = (k + 1) % options_.side_count;
+      tubes_.triangles.push_back({ring + k, ring + l, next + k});
+      tubes_.triangles.push_back({ring + l, next + l, next + k});
+    }
+  }
+
+  void close(std::int32_t apex, std::int32_t ring, bool at_start) {
+    for (int k = 0; k < options_.side_count; ++k) {
+      const int l = (k + 1) % options_.side_count;
+      tubes_.triangles.push_back(at_start ? Triangle{apex, ring + l, ring + k} : Triangle{apex, ring + k, ring + l});
+    }
+  }
+
+  Tubes& tubes_;
+  const TubeOptions& options_;
+};
+
+}  // namespace
+
+Tubes make_tubes(const SurfaceMesh& mesh, const Placement& placement, const TubeOptions& options) {
+  check(options);
+  Tubes tubes;
+  tubes.vertex_offsets.push_back(0);
+  tubes.triangle_offsets.push_back(0);
+  TubeBuilder builder(tubes, options);
+  for (std::size_t i = 0; i + 1 < placement.offsets.size(); ++i) {
+    builder.add(stations(resample(polyline(mesh, placement, i), options)));
+  }
+  return tubes;
+}
+
+}  // namespace pectinate
