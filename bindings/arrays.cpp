@@ -10,7 +10,9 @@
 namespace pectinate::bindings {
 namespace {
 
-std::string shape_text(const py::array& array) { return py::str(array.attr("shape")); }
+std::string shape_text(const py::array& array) {
+  return py::str(array.attr("shape"));
+}
 
 void check_rows(const py::array& array, std::size_t columns, const char* name, const std::string& kinds) {
   if (kinds.find(array.dtype().kind()) == std::string::npos) {
@@ -56,9 +58,12 @@ template class Rows<6>;
 std::vector<Triangle> to_triangles(const py::array& array) {
   check_rows(array, 3, "triangles", "iuf");
   switch (array.dtype().kind()) {
-    case 'i': return convert<std::int64_t>(array);
-    case 'u': return convert<std::uint64_t>(array);
-    default: return convert<double>(array);
+    case 'i':
+      return convert<std::int64_t>(array);
+    case 'u':
+      return convert<std::uint64_t>(array);
+    default:
+      return convert<double>(array);
   }
 }
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "pectinate/placement.hpp"
-
 #include <pybind11/native_enum.h>
 #include <pybind11/stl.h>
 
@@ -8,6 +6,7 @@
 
 #include "arrays.hpp"
 #include "module.hpp"
+#include "pectinate/placement.hpp"
 
 namespace pectinate::bindings {
 namespace {
@@ -26,8 +25,9 @@ std::function<bool(double)> with_signals(const py::object& progress) {
 Placement place(const SurfaceMesh& mesh, const OrientationField& field, double separation_distance,
                 PlacementMethod method, int seed_count, double seed_distance_factor, double abrupt_turn_angle,
                 std::int64_t max_steps, std::uint64_t random_seed, int thread_count, const py::object& progress) {
-  const PlacementOptions options{separation_distance, method,      seed_count,   seed_distance_factor, abrupt_turn_angle,
-                                 max_steps,           random_seed, thread_count, with_signals(progress)};
+  const PlacementOptions options{separation_distance,   method,    seed_count,  seed_distance_factor,
+                                 abrupt_turn_angle,     max_steps, random_seed, thread_count,
+                                 with_signals(progress)};
   const py::gil_scoped_release release;
   return place_streamlines(mesh, field, options);
 }
@@ -68,8 +68,7 @@ void bind_statistics(py::module_& module) {
   module.def(
       "length_histogram",
       [](const py::array_t<double, py::array::c_style | py::array::forcecast>& lengths, int bin_count) {
-        auto [edges, counts] =
-            length_histogram({lengths.data(), static_cast<std::size_t>(lengths.size())}, bin_count);
+        auto [edges, counts] = length_histogram({lengths.data(), static_cast<std::size_t>(lengths.size())}, bin_count);
         return std::pair{py::array_t<double>(static_cast<py::ssize_t>(edges.size()), edges.data()),
                          py::array_t<std::int64_t>(static_cast<py::ssize_t>(counts.size()), counts.data())};
       },

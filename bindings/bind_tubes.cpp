@@ -6,7 +6,10 @@
 namespace pectinate::bindings {
 
 void bind_tubes(py::module_& module) {
-  py::class_<Tubes>(module, "Tubes")
+  py::class_<Tubes>(
+      module, "Tubes",
+      "Closed tubes, one per streamline: vertices (N, 3) float64, triangles (M, 3) int32, counter-clockwise seen from "
+      "outside; vertex_offsets and triangle_offsets (n + 1,) int64 part them by streamline.")
       .def_property_readonly("vertices", viewed<Tubes>(&Tubes::vertices))
       .def_property_readonly("triangles", viewed<Tubes>(&Tubes::triangles))
       .def_property_readonly("vertex_offsets", viewed<Tubes>(&Tubes::vertex_offsets))

@@ -92,8 +92,8 @@ class EdgeMask final : public Occupancy {
     const std::uint64_t wholly = region == SeedRegion::partly_free ? 0 : wholly_free_.total();
     if (partly + wholly == 0) return std::nullopt;
     const std::uint64_t offset = random.below(partly + wholly);
-    const auto edge = static_cast<std::int32_t>(offset < partly ? partly_free_.find(offset)
-                                                                : wholly_free_.find(offset - partly));
+    const auto edge =
+        static_cast<std::int32_t>(offset < partly ? partly_free_.find(offset) : wholly_free_.find(offset - partly));
     const std::uint64_t bits = free_bits(edge);
     const int bit = nth_set_bit(bits, random.below(static_cast<std::uint64_t>(std::popcount(bits))));
     return EdgePoint{edge, detail::clamp_position((bit + random.unit()) / bit_count)};

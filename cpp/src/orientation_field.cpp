@@ -108,7 +108,9 @@ DirectionStatus status_of(std::span<const double> numbers) {
 void add(PlaneTensor& sum, const Vec3& v, const Plane& plane) {
   sum.add_line((vector(v) / vector(v).cwiseAbs().maxCoeff()).normalized(), plane);
 }
-void add(PlaneTensor& sum, const SymmetricTensor& t, const Plane& plane) { sum.add_tensor(t, plane); }
+void add(PlaneTensor& sum, const SymmetricTensor& t, const Plane& plane) {
+  sum.add_tensor(t, plane);
+}
 
 /// The line average of the valid ones among some inputs.
 template <class Input>
@@ -161,8 +163,9 @@ Directions direct_all(const SurfaceMesh& mesh, const Direct& direct) {
     all.out_of_plane_angles.push_back(result.out_of_plane_angle);
   }
   if (std::find(all.status.begin(), all.status.end(), DirectionStatus::valid) == all.status.end()) {
-    throw InvalidField("no triangle has a direction: all vectors are zero, not finite or perpendicular to the "
-                       "surface; check which array was read");
+    throw InvalidField(
+        "no triangle has a direction: all vectors are zero, not finite or perpendicular to the "
+        "surface; check which array was read");
   }
   return all;
 }
@@ -171,9 +174,8 @@ Directions direct_all(const SurfaceMesh& mesh, const Direct& direct) {
 template <class Input>
 Directions average_corners(const SurfaceMesh& mesh, std::span<const Input> inputs) {
   check_count(inputs.size(), mesh.input_vertex_count(), "vertices");
-  return direct_all(mesh, [&](std::size_t t, const Plane& plane) {
-    return average<Input>(at_corners(mesh, t, inputs), plane);
-  });
+  return direct_all(
+      mesh, [&](std::size_t t, const Plane& plane) { return average<Input>(at_corners(mesh, t, inputs), plane); });
 }
 
 }  // namespace
@@ -186,9 +188,8 @@ OrientationField::OrientationField(std::vector<Vec3> directions, std::vector<Dir
 
 OrientationField OrientationField::from_triangle_vectors(const SurfaceMesh& mesh, std::span<const Vec3> vectors) {
   check_count(vectors.size(), mesh.input_triangle_count(), "triangles");
-  auto [units, status, angles] = direct_all(mesh, [&](std::size_t t, const Plane& plane) {
-    return from_vector(vectors[mesh.input_triangle()[t]], plane);
-  });
+  auto [units, status, angles] = direct_all(
+      mesh, [&](std::size_t t, const Plane& plane) { return from_vector(vectors[mesh.input_triangle()[t]], plane); });
   return {std::move(units), std::move(status), std::move(angles)};
 }
 

@@ -18,8 +18,7 @@ using detail::vector;
 /// Swapping corners 1 and 2 reverses a triangle; its sides then come in this order.
 constexpr std::array<std::int8_t, 3> reversed_side = {2, 1, 0};
 
-void reverse_triangles(const std::vector<bool>& reverse, std::vector<Triangle>& triangles,
-                       detail::Topology& topology) {
+void reverse_triangles(const std::vector<bool>& reverse, std::vector<Triangle>& triangles, detail::Topology& topology) {
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     if (reverse[t]) {
       std::swap(triangles[t][1], triangles[t][2]);
@@ -73,10 +72,9 @@ SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangl
   soup = detail::split_vertices(std::move(soup), topology);
 
   auto orientation = detail::find_orientation(soup.triangles, topology.neighbours);
-  loops_ = detail::find_boundary_loops(soup.vertices, soup.triangles, topology.neighbours,
-                                       orientation.triangle_components);
-  const auto inwards =
-      detail::points_inwards(soup.vertices, soup.triangles, topology.neighbours, orientation, loops_);
+  loops_ =
+      detail::find_boundary_loops(soup.vertices, soup.triangles, topology.neighbours, orientation.triangle_components);
+  const auto inwards = detail::points_inwards(soup.vertices, soup.triangles, topology.neighbours, orientation, loops_);
   for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
     if (inwards[orientation.triangle_components[t]]) orientation.reverse[t] = !orientation.reverse[t];
     if (orientation.reverse[t]) soup.repairs.reversed_triangles.push_back(soup.input_triangle[t]);

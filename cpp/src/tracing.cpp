@@ -29,8 +29,10 @@ void check(const SurfaceMesh& mesh, const OrientationField& field, const Tracing
   }
   const double d = options.separation_distance, diagonal = mesh.bounding_box_diagonal();
   if (!std::isfinite(d) || !(d >= least_relative_separation * diagonal)) {
-    throw InvalidOption("separation_distance is " + std::to_string(d) + ", but must be finite and at least 1e-6 of the "
-                        "mesh's diagonal, " + std::to_string(diagonal) + "; give it in the unit of the mesh");
+    throw InvalidOption("separation_distance is " + std::to_string(d) +
+                        ", but must be finite and at least 1e-6 of the "
+                        "mesh's diagonal, " +
+                        std::to_string(diagonal) + "; give it in the unit of the mesh");
   }
   if (!(options.abrupt_turn_angle > 0 && options.abrupt_turn_angle <= std::numbers::pi)) {
     throw InvalidOption("abrupt_turn_angle is " + std::to_string(options.abrupt_turn_angle) +
@@ -77,14 +79,13 @@ struct Tracing {
 StopReason trace_one_way(const Tracing& tracing, Entry entry, double direction, Workspace& workspace) {
   auto& line = workspace.streamline;
   const double separation = tracing.options.separation_distance;
-  double chord =
-      detail::chord_coordinate(tracing.crossings[entry.triangle], entry.role, line.points.back().position);
+  double chord = detail::chord_coordinate(tracing.crossings[entry.triangle], entry.role, line.points.back().position);
   double length = 0;
   for (std::int64_t step = 0; step < tracing.options.max_steps; ++step) {
     const auto& crossings = tracing.crossings[entry.triangle];
-    const Role role = entry.role != detail::low_high    ? detail::low_high
-                      : chord < crossings.split ? detail::low_middle
-                                                : detail::middle_high;
+    const Role role = entry.role != detail::low_high ? detail::low_high
+                      : chord < crossings.split      ? detail::low_middle
+                                                     : detail::middle_high;
     const auto& exit = crossings.exits[role];
     const EdgePoint point{exit.edge, detail::edge_position(crossings, role, chord)};
     if (tracing.occupancy && !tracing.occupancy->admits(entry.triangle, point)) return StopReason::near_other;
@@ -122,7 +123,9 @@ StreamlineTracer::StreamlineTracer(const SurfaceMesh& mesh, const OrientationFie
 
 StreamlineTracer::~StreamlineTracer() = default;
 
-const TracingOptions& StreamlineTracer::options() const { return precomputed_->options; }
+const TracingOptions& StreamlineTracer::options() const {
+  return precomputed_->options;
+}
 
 std::optional<std::int32_t> StreamlineTracer::start_triangle(std::int32_t edge) const {
   for (const auto t : precomputed_->mesh.edge_triangles(edge)) {
@@ -166,6 +169,8 @@ std::unique_ptr<StreamlineTracer::Workspace, StreamlineTracer::WorkspaceDeleter>
   return std::unique_ptr<Workspace, WorkspaceDeleter>(new Workspace);
 }
 
-void StreamlineTracer::WorkspaceDeleter::operator()(Workspace* workspace) const { delete workspace; }
+void StreamlineTracer::WorkspaceDeleter::operator()(Workspace* workspace) const {
+  delete workspace;
+}
 
 }  // namespace pectinate

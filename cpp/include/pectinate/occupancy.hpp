@@ -13,9 +13,9 @@ class Random;
 
 /// Where a seed point may be drawn.
 enum class SeedRegion : std::uint8_t {
-  free,           ///< anywhere that is not occupied
-  partly_free,    ///< the free part of partly occupied edges: within an edge length of the occupied region
-  wholly_free,    ///< edges without any occupied part
+  free,         ///< anywhere that is not occupied
+  partly_free,  ///< the free part of partly occupied edges: within an edge length of the occupied region
+  wholly_free,  ///< edges without any occupied part
 };
 
 /// What part of the surface lies within d_sep of the streamlines added so far. Grows only.

@@ -13,10 +13,10 @@ namespace pectinate {
 /// Why a triangle has a direction, or has none.
 enum class DirectionStatus : std::uint8_t {
   valid,
-  zero,         ///< the vector (or tensor) is zero
-  non_finite,   ///< it has a NaN or an infinite component
-  normal,       ///< it stands perpendicular to the triangle: nothing is left in the plane
-  isotropic,    ///< the tensor, or the average over the corners, prefers no direction in the plane
+  zero,        ///< the vector (or tensor) is zero
+  non_finite,  ///< it has a NaN or an infinite component
+  normal,      ///< it stands perpendicular to the triangle: nothing is left in the plane
+  isotropic,   ///< the tensor, or the average over the corners, prefers no direction in the plane
 };
 
 /// A symmetric 3 x 3 tensor: xx, yy, zz, xy, yz, xz (the order of VTK).

@@ -29,12 +29,12 @@ enum class PlacementEnd : std::uint8_t {
 struct PlacementOptions {
   double separation_distance = 1.6;  ///< d_sep, unit of the mesh, > 0
   PlacementMethod method = PlacementMethod::distance;
-  int seed_count = 32;               ///< n_seeds, candidates a step, >= 1; the longest is kept
-  double seed_distance_factor = 1.3; ///< c_seed, >= 1, of method `distance`
+  int seed_count = 32;                ///< n_seeds, candidates a step, >= 1; the longest is kept
+  double seed_distance_factor = 1.3;  ///< c_seed, >= 1, of method `distance`
   double abrupt_turn_angle = TracingOptions{}.abrupt_turn_angle;  ///< radians, in (0, pi]; pi disables criterion 4
-  std::int64_t max_steps = TracingOptions{}.max_steps;  ///< triangles crossed each way, >= 1
-  std::uint64_t random_seed = 20190101;  ///< the same seed gives the same bytes
-  int thread_count = 1;  ///< >= 1; the result does not depend on it
+  std::int64_t max_steps = TracingOptions{}.max_steps;            ///< triangles crossed each way, >= 1
+  std::uint64_t random_seed = 20190101;                           ///< the same seed gives the same bytes
+  int thread_count = 1;                                           ///< >= 1; the result does not depend on it
   /// Called now and then with the coverage in [0, 1], from the calling thread; false ends the placement.
   std::function<bool(double coverage)> progress;
 };
@@ -49,9 +49,9 @@ struct Placement {
   std::vector<Vec3> barycentric;                ///< per point: weights of that triangle's corners, sum 1
   std::vector<double> lengths;
   std::vector<std::array<StopReason, 2>> stop_reasons;  ///< at the first and the last point
-  std::vector<std::int64_t> seed_points;        ///< per streamline: the index in `points` of its seed
+  std::vector<std::int64_t> seed_points;                ///< per streamline: the index in `points` of its seed
   PlacementStatistics statistics;
-  PlacementOptions options;                     ///< as used, `progress` left out
+  PlacementOptions options;  ///< as used, `progress` left out
   PlacementEnd end = PlacementEnd::complete;
 };
 

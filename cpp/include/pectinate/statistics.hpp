@@ -14,13 +14,13 @@ namespace pectinate {
 struct PlacementStatistics {
   std::int64_t streamline_count = 0;  ///< n
   double total_length = 0;
-  double mean_length = 0;             ///< L_avg
-  double length_weighted_mean = 0;    ///< sum L^2 / sum L: the length of the line that a random point of a line is on
-  double surface_area = 0;            ///< A, of the triangles with a direction
-  double mean_spacing = 0;            ///< d_avg = A / (n L_avg)
-  double mean_spacing_ratio = 0;      ///< d_avg / d_sep
-  double short_fraction = 0;          ///< share of streamlines shorter than d_sep
-  double coverage = 0;                ///< share of the edges' length that is within d_sep of a streamline
+  double mean_length = 0;           ///< L_avg
+  double length_weighted_mean = 0;  ///< sum L^2 / sum L: the length of the line that a random point of a line is on
+  double surface_area = 0;          ///< A, of the triangles with a direction
+  double mean_spacing = 0;          ///< d_avg = A / (n L_avg)
+  double mean_spacing_ratio = 0;    ///< d_avg / d_sep
+  double short_fraction = 0;        ///< share of streamlines shorter than d_sep
+  double coverage = 0;              ///< share of the edges' length that is within d_sep of a streamline
   std::array<std::int64_t, stop_reason_count> stop_counts{};  ///< ends by StopReason, two per streamline
 };
 

@@ -19,7 +19,7 @@ struct MeshRepairs {
   std::vector<std::int32_t> unreferenced_vertices;  ///< dropped: no kept triangle uses them
   std::vector<std::int32_t> reversed_triangles;     ///< kept, winding reversed to agree with their component
   std::vector<std::array<std::int32_t, 2>> non_manifold_edges;  ///< cut open: more than two triangles met there
-  std::vector<std::int32_t> split_vertices;         ///< duplicated: their triangles form more than one fan
+  std::vector<std::int32_t> split_vertices;                     ///< duplicated: their triangles form more than one fan
 };
 
 /// A closed border of the surface.

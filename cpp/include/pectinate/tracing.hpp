@@ -33,7 +33,7 @@ enum class StopReason : std::uint8_t {
 inline constexpr int stop_reason_count = 6;
 
 struct TracingOptions {
-  double separation_distance;  ///< d_sep, unit of the mesh, > 0
+  double separation_distance;                       ///< d_sep, unit of the mesh, > 0
   double abrupt_turn_angle = std::numbers::pi / 2;  ///< radians, in (0, pi]; pi disables criterion 4
   std::int64_t max_steps = 65536;  ///< triangles crossed in each direction, >= 1 (the paper's buffer held 1024)
 };
@@ -43,7 +43,7 @@ struct Streamline {
   std::vector<EdgePoint> points;
   std::vector<std::int32_t> triangles;  ///< per segment: one fewer than points
   double length = 0;
-  std::int64_t seed_index = 0;  ///< which of `points` is the seed
+  std::int64_t seed_index = 0;               ///< which of `points` is the seed
   std::array<StopReason, 2> stop_reasons{};  ///< at the first and at the last point
 };
 

@@ -105,8 +105,8 @@ std::vector<TriangleCrossings> make_crossings(const SurfaceMesh& mesh, const Ori
     all.directions[t] = safe_direction(mesh, t, vector(field.directions()[t]));
     const Vector across = vector(mesh.triangle_normals()[t]).cross(all.directions[t]);
     const Vector origin = corner(mesh, t, 0);
-    all.middle[t] = static_cast<std::int8_t>(middle_corner(
-        {0, (corner(mesh, t, 1) - origin).dot(across), (corner(mesh, t, 2) - origin).dot(across)}));
+    all.middle[t] = static_cast<std::int8_t>(
+        middle_corner({0, (corner(mesh, t, 1) - origin).dot(across), (corner(mesh, t, 2) - origin).dot(across)}));
     crossings[t] = measure_chords(mesh, t, all.directions[t], all.middle[t]);
   }
   for (std::int32_t t = 0; t < count; ++t) {

@@ -29,8 +29,8 @@ struct Exit {
 /// the paper's critical coordinate s_c of that side.
 struct TriangleCrossings {
   double split = 0;
-  double longest_chord = 0;  ///< through the middle corner
-  double width = 0;          ///< across the field, from the low corner to the high one
+  double longest_chord = 0;     ///< through the middle corner
+  double width = 0;             ///< across the field, from the low corner to the high one
   std::array<Exit, 3> exits{};  ///< by Role
 };
 
@@ -39,7 +39,9 @@ std::vector<TriangleCrossings> make_crossings(const SurfaceMesh& mesh, const Ori
                                               double abrupt_turn_angle);
 
 /// The part of triangle side `side` in the chords, given the corner that lies in the middle.
-inline Role role_of(int side, int middle) { return std::array{low_middle, low_high, middle_high}[(side - middle + 3) % 3]; }
+inline Role role_of(int side, int middle) {
+  return std::array{low_middle, low_high, middle_high}[(side - middle + 3) % 3];
+}
 
 /// The position along its edge at which a chord crosses a side, and the chord that starts at such a position.
 double edge_position(const TriangleCrossings& crossings, Role role, double chord);

@@ -12,7 +12,9 @@ namespace pectinate::detail {
 /// Crossings keep this share of the edge away from its ends: a streamline never hits a vertex.
 inline constexpr double least_position = 1e-9;
 
-inline double clamp_position(double position) { return std::clamp(position, least_position, 1 - least_position); }
+inline double clamp_position(double position) {
+  return std::clamp(position, least_position, 1 - least_position);
+}
 
 inline Vector position(const SurfaceMesh& mesh, const EdgePoint& point) {
   const auto [a, b] = mesh.edges()[point.edge];

@@ -24,7 +24,7 @@ class SeedRing {
  private:
   EdgeSearch search_;
   double distance_;
-  std::vector<EdgeSearch::Found> partial_;  // of the streamline at hand: edges that are partly within reach
+  std::vector<EdgeSearch::Found> partial_;   // of the streamline at hand: edges that are partly within reach
   std::vector<std::uint32_t> inside_round_;  // per edge: the last round in which it was wholly within reach
   std::uint32_t round_ = 0;                  // one a streamline
   std::vector<EdgePoint> points_;

@@ -53,7 +53,8 @@ SelfApproach::Cell SelfApproach::cell_of(const Vector& point) const {
 
 std::size_t SelfApproach::slot_of(const Cell& cell) const {
   const auto mix = [](std::int64_t c, std::uint64_t prime) { return static_cast<std::uint64_t>(c) * prime; };
-  const auto hash = mix(cell[0], 0x9e3779b97f4a7c15) ^ mix(cell[1], 0xc2b2ae3d27d4eb4f) ^ mix(cell[2], 0x165667b19e3779f9);
+  const auto hash =
+      mix(cell[0], 0x9e3779b97f4a7c15) ^ mix(cell[1], 0xc2b2ae3d27d4eb4f) ^ mix(cell[2], 0x165667b19e3779f9);
   return (hash ^ hash >> 29) & (slots_.size() - 1);
 }
 

@@ -40,9 +40,8 @@ std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
       sides.push_back({{low, high}, t, k});
     }
   }
-  std::sort(sides.begin(), sides.end(), [](const Side& a, const Side& b) {
-    return a.ends != b.ends ? a.ends < b.ends : a.triangle < b.triangle;
-  });
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& a, const Side& b) { return a.ends != b.ends ? a.ends < b.ends : a.triangle < b.triangle; });
   return sides;
 }
 
@@ -58,7 +57,8 @@ std::int32_t corner_at(const std::vector<Triangle>& triangles, const Side& side,
 }
 
 /// The fans of triangles: corners joined across joined sides.
-UnionFind find_fans(const std::vector<Triangle>& triangles, const std::vector<std::array<SideNeighbour, 3>>& neighbours) {
+UnionFind find_fans(const std::vector<Triangle>& triangles,
+                    const std::vector<std::array<SideNeighbour, 3>>& neighbours) {
   UnionFind fans(3 * triangles.size());
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles.size()); ++t) {
     for (std::int8_t k = 0; k < 3; ++k) {

@@ -17,7 +17,9 @@ namespace {
 /// Below this height over the longest side a triangle has no usable plane in double precision.
 constexpr double least_relative_height = 1e-10;
 
-bool is_finite(const Vec3& v) { return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]); }
+bool is_finite(const Vec3& v) {
+  return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
 
 void check_sizes(std::size_t vertex_count, std::size_t triangle_count) {
   constexpr auto most = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) / 4;

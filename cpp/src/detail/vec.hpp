@@ -9,7 +9,11 @@ namespace pectinate::detail {
 
 using Vector = Eigen::Vector3d;
 
-inline Eigen::Map<const Vector> vector(const Vec3& v) { return Eigen::Map<const Vector>(v.data()); }
-inline Vec3 vec3(const Vector& v) { return {v.x(), v.y(), v.z()}; }
+inline Eigen::Map<const Vector> vector(const Vec3& v) {
+  return Eigen::Map<const Vector>(v.data());
+}
+inline Vec3 vec3(const Vector& v) {
+  return {v.x(), v.y(), v.z()};
+}
 
 }  // namespace pectinate::detail

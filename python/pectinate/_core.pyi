@@ -1,0 +1,173 @@
+from collections.abc import Callable
+from enum import Enum, IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+_Floats = NDArray[np.float64]
+_Ints = NDArray[np.int32]
+_Longs = NDArray[np.int64]
+_Numbers = NDArray[Any]
+
+class Error(Exception): ...
+class InvalidMesh(Error, ValueError): ...
+class InvalidField(Error, ValueError): ...
+class InvalidOption(Error, ValueError): ...
+class SolverFailure(Error, RuntimeError): ...
+
+class MeshRepairs:
+    degenerate_triangles: _Ints
+    duplicate_triangles: _Ints
+    non_finite_vertices: _Ints
+    non_finite_triangles: _Ints
+    unreferenced_vertices: _Ints
+    reversed_triangles: _Ints
+    non_manifold_edges: _Ints
+    split_vertices: _Ints
+
+class BoundaryLoop:
+    vertices: _Ints
+    length: float
+    diameter: float
+    centroid: list[float]
+    component: int
+
+class SurfaceComponent:
+    triangle_count: int
+    area: float
+    euler_characteristic: int
+    boundary_loop_count: int
+    orientable: bool
+    genus: int
+
+class SurfaceMesh:
+    def __init__(self, vertices: _Numbers, triangles: _Numbers) -> None: ...
+    vertices: _Floats
+    triangles: _Ints
+    triangle_count: int
+    input_vertex_count: int
+    input_triangle_count: int
+    input_vertex: _Ints
+    input_triangle: _Ints
+    repairs: MeshRepairs
+    edges: _Ints
+    edge_lengths: _Floats
+    triangle_areas: _Floats
+    triangle_normals: _Floats
+    triangle_components: _Ints
+    area: float
+    bounding_box_diagonal: float
+    components: list[SurfaceComponent]
+    boundary_loops: list[BoundaryLoop]
+
+class DirectionStatus(IntEnum):
+    valid = 0
+    zero = 1
+    non_finite = 2
+    normal = 3
+    isotropic = 4
+
+class OrientationField:
+    @staticmethod
+    def from_triangle_vectors(mesh: SurfaceMesh, vectors: _Numbers) -> OrientationField: ...
+    @staticmethod
+    def from_vertex_vectors(mesh: SurfaceMesh, vectors: _Numbers) -> OrientationField: ...
+    @staticmethod
+    def from_triangle_tensors(mesh: SurfaceMesh, tensors: _Numbers) -> OrientationField: ...
+    @staticmethod
+    def from_vertex_tensors(mesh: SurfaceMesh, tensors: _Numbers) -> OrientationField: ...
+    directions: _Floats
+    status: NDArray[np.uint8]
+    out_of_plane_angles: _Floats
+    def count(self, status: DirectionStatus) -> int: ...
+
+class PlacementMethod(Enum):
+    random = 0
+    neighborhood = 1
+    distance = 2
+
+class PlacementEnd(Enum):
+    complete = 0
+    cancelled = 1
+
+class StopReason(IntEnum):
+    max_steps = 0
+    boundary = 1
+    near_other = 2
+    abrupt_turn = 3
+    near_itself = 4
+    no_field = 5
+
+class PlacementStatistics:
+    streamline_count: int
+    total_length: float
+    mean_length: float
+    length_weighted_mean: float
+    surface_area: float
+    mean_spacing: float
+    mean_spacing_ratio: float
+    short_fraction: float
+    coverage: float
+    stop_counts: list[int]
+
+class PlacementOptions:
+    separation_distance: float
+    method: PlacementMethod
+    seed_count: int
+    seed_distance_factor: float
+    abrupt_turn_angle: float
+    max_steps: int
+    random_seed: int
+    thread_count: int
+
+class Placement:
+    points: _Floats
+    offsets: _Longs
+    segment_triangles: _Ints
+    point_triangles: _Ints
+    barycentric: _Floats
+    lengths: _Floats
+    stop_reasons: NDArray[np.uint8]
+    seed_points: _Longs
+    statistics: PlacementStatistics
+    options: PlacementOptions
+    end: PlacementEnd
+
+class Tubes:
+    vertices: _Floats
+    triangles: _Ints
+    vertex_offsets: _Longs
+    triangle_offsets: _Longs
+
+class NamedLoop:
+    name: str
+    vertices: _Ints
+
+class DemoAtrium:
+    vertices: _Floats
+    triangles: _Ints
+    directions: _Floats
+    regions: _Ints
+    region_names: list[str]
+    loops: list[NamedLoop]
+
+def place_streamlines(
+    mesh: SurfaceMesh,
+    field: OrientationField,
+    *,
+    separation_distance: float = ...,
+    method: PlacementMethod = ...,
+    seed_count: int = ...,
+    seed_distance_factor: float = ...,
+    abrupt_turn_angle: float = ...,
+    max_steps: int = ...,
+    random_seed: int = ...,
+    thread_count: int = ...,
+    progress: Callable[[float], bool | None] | None = None,
+) -> Placement: ...
+def make_tubes(
+    mesh: SurfaceMesh, placement: Placement, *, radius: float = ..., taper_length: float = ..., side_count: int = ...
+) -> Tubes: ...
+def make_demo_atrium(*, edge_length: float = ...) -> DemoAtrium: ...
+def length_histogram(lengths: _Floats, bin_count: int) -> tuple[_Floats, _Longs]: ...

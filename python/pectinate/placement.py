@@ -1,0 +1,261 @@
+"""Evenly spaced streamlines: placing them, and what can be done with them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pectinate import _core
+from pectinate.errors import InvalidField, InvalidOption
+from pectinate.io import load, streamlines
+from pectinate.model import Model
+from pectinate.statistics import PlacementStatistics
+
+if TYPE_CHECKING:
+    from PIL import Image
+
+_OPTION_NAMES = (
+    "separation_distance",
+    "method",
+    "seed_count",
+    "seed_distance_factor",
+    "abrupt_turn_angle",
+    "max_steps",
+    "random_seed",
+    "thread_count",
+)
+
+
+def _plain_options(options: _core.PlacementOptions) -> dict[str, Any]:
+    values = {name: getattr(options, name) for name in _OPTION_NAMES}
+    return values | {"method": options.method.name}
+
+
+#: The options of `place_streamlines` and their defaults, as the engine has them.
+DEFAULTS: dict[str, Any] = _plain_options(_core.PlacementOptions())
+
+
+def place_streamlines(
+    surface: Any, *, progress: Callable[[float], bool | None] | None = None, **options: Any
+) -> Placement:
+    """Fill a surface with evenly spaced streamlines of its orientation field (paper sections 2.4 to 2.7).
+
+    Streamlines are placed one by one, each the longest of `seed_count` candidates, until nothing is free. The same
+    arguments give the same bytes, whatever `thread_count`.
+
+    Parameters
+    ----------
+    surface
+        A `Model`, or anything that `pectinate.load` takes.
+    progress
+        Called now and then with the coverage in [0, 1]; returning False ends the placement with what is there.
+    separation_distance : float
+        d_sep, mm: streamlines come no closer.
+    method : str
+        Where candidates start: "random" (anywhere free), "neighborhood" (just beside placed streamlines) or
+        "distance" (at `seed_distance_factor` d_sep from them).
+    seed_count : int
+        Candidates a step, at least 1.
+    seed_distance_factor : float
+        c_seed, at least 1.
+    abrupt_turn_angle : float
+        Radians in (0, pi]: a streamline ends where the field turns by more from one triangle to the next; pi disables
+        this.
+    max_steps : int
+        Triangles that a streamline crosses each way at most.
+    random_seed : int
+        In [0, 2^64).
+    thread_count : int
+        At least 1.
+
+    Returns
+    -------
+    Placement
+
+    Raises
+    ------
+    InvalidOption
+        An option out of its range.
+    InvalidField
+        The surface has no orientation field.
+    TypeError
+        An unknown option.
+    """
+    model = load(surface)
+    if model.field is None:
+        raise InvalidField(f"{model.data.source} has no orientation field; give one with load(..., field=...)")
+    if "method" in options:
+        options["method"] = _method(options["method"])
+    return Placement(model, _core.place_streamlines(model.mesh, model.field, progress=progress, **options))
+
+
+def _method(name: Any) -> _core.PlacementMethod:
+    try:
+        return _core.PlacementMethod[name]
+    except KeyError:
+        names = ", ".join(method.name for method in _core.PlacementMethod)
+        raise InvalidOption(f"method is {name!r}, but must be one of {names}") from None
+
+
+class Placement:
+    """Streamlines on a surface, in the order in which they were placed.
+
+    All arrays are read-only. Triangle indices are those of `mesh`; `mesh.input_triangle` leads back to the input's.
+
+    Attributes
+    ----------
+    model, mesh, field
+        What the streamlines lie on.
+    points
+        (N, 3) float64, mm: all streamlines, one after the other. Each lies on an edge.
+    offsets
+        (n + 1,) int64: streamline i owns points[offsets[i]:offsets[i + 1]].
+    segment_triangles
+        (N - n,) int32: the triangle that each segment crosses.
+    point_triangles, barycentric
+        (N,) int32 and (N, 3) float64: a triangle that each point lies on, and the weights of its corners, sum 1.
+    lengths
+        (n,) float64, mm.
+    stop_reasons
+        (n, 2) uint8: why it ends at its first and at its last point, by `StopReason` value.
+    seed_points
+        (n,) int64: the index in `points` of each streamline's seed.
+    statistics
+        `PlacementStatistics`.
+    options
+        The options as used, defaults included.
+    end
+        "complete" or "cancelled".
+    """
+
+    def __init__(self, model: Model, core: _core.Placement) -> None:
+        self._core = core
+        self.model = model
+        self.mesh = model.mesh
+        self.points: NDArray[np.float64] = core.points
+        self.offsets: NDArray[np.int64] = core.offsets
+        self.segment_triangles: NDArray[np.int32] = core.segment_triangles
+        self.point_triangles: NDArray[np.int32] = core.point_triangles
+        self.barycentric: NDArray[np.float64] = core.barycentric
+        self.lengths: NDArray[np.float64] = core.lengths
+        self.stop_reasons: NDArray[np.uint8] = core.stop_reasons
+        self.seed_points: NDArray[np.int64] = core.seed_points
+        self.statistics = PlacementStatistics.from_core(core.statistics)
+        self.options = _plain_options(core.options)
+        self.end: str = core.end.name
+
+    @property
+    def field(self) -> _core.OrientationField:
+        """The orientation field that the streamlines follow."""
+        assert self.model.field is not None
+        return self.model.field
+
+    def __len__(self) -> int:
+        """Count the streamlines."""
+        return len(self.lengths)
+
+    def __iter__(self) -> Iterator[NDArray[np.float64]]:
+        """Iterate over the streamlines' points, (k, 3) each."""
+        return iter(np.split(self.points, self.offsets[1:-1]) if len(self) else [])
+
+    def __repr__(self) -> str:
+        """Say how many and how long."""
+        mean = self.statistics.mean_length
+        return f"<Placement of {len(self)} streamlines, mean length {mean:.2f} mm, {self.end}>"
+
+    def tubes(
+        self,
+        *,
+        radius: float | None = None,
+        taper_length: float | None = None,
+        side_count: int | None = None,
+    ) -> _core.Tubes:
+        """Make watertight tapered tubes (paper section 2.8 and equation 3).
+
+        Parameters
+        ----------
+        radius
+            rho_0, mm. By default `default_tube_radius()`.
+        taper_length
+            lambda, mm: over which the ends grow thin; 0 gives blunt ends.
+        side_count
+            3 to 12.
+
+        Raises
+        ------
+        InvalidOption
+            An option out of its range.
+        """
+        given: dict[str, Any] = {
+            "radius": self.default_tube_radius() if radius is None else radius,
+            "taper_length": taper_length,
+            "side_count": side_count,
+        }
+        return _core.make_tubes(self.mesh, self._core, **{k: v for k, v in given.items() if v is not None})
+
+    def default_tube_radius(self) -> float:
+        """Return the tube radius, mm, in the paper's proportion: 0.18 mm for a separation distance of 0.8 mm."""
+        radius: float = 0.18 / 0.8 * self.options["separation_distance"]
+        return radius
+
+    def save(self, path: str | os.PathLike[str], **tube_options: Any) -> None:
+        """Write the streamlines, in the format that the suffix names.
+
+        Parameters
+        ----------
+        path
+            `.npz`: all arrays with the surface and the field, see `pectinate.io.streamlines`. `.vtp`: poly-lines with
+            their data, for ParaView (extra `vtk`). `.ply`, `.obj`, `.glb`: tubes.
+        tube_options
+            Of `tubes`, for the last three only.
+
+        Raises
+        ------
+        InvalidOption
+            An unknown suffix, or an option out of its range.
+        InvalidFile
+            The file cannot be written.
+        MissingDependency
+            `.vtp` without PyVista.
+        """
+        streamlines.save(self, Path(path), **tube_options)
+
+    def figure(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        tube_radius: float | None = None,
+        taper_length: float | None = None,
+        side_count: int | None = None,
+        **sheet_options: Any,
+    ) -> Image.Image:
+        """Draw the surface with the streamlines as tubes, in one or several views.
+
+        Parameters
+        ----------
+        path
+            Where to write the picture; by default nowhere.
+        tube_radius, taper_length, side_count
+            As `radius`, `taper_length` and `side_count` of `tubes`.
+        sheet_options
+            Of `pectinate.figure.draw_sheet`: `views`, `size`, `columns`, ...
+
+        Raises
+        ------
+        RenderingUnavailable
+            There is no OpenGL; the message names the packages that bring it.
+        """
+        from pectinate.figure import draw_sheet  # noqa: PLC0415  (OpenGL is loaded for drawing only)
+
+        tubes = self.tubes(radius=tube_radius, taper_length=taper_length, side_count=side_count)
+        sheet = draw_sheet(
+            (self.mesh.vertices, self.mesh.triangles), (tubes.vertices, tubes.triangles), **sheet_options
+        )
+        if path is not None:
+            sheet.save(path)
+        return sheet
