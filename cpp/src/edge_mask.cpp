@@ -68,18 +68,18 @@ class EdgeMask final : public Occupancy {
     return !(occupied_[point.edge] & bit_at(point.position));
   }
 
-  bool admits_seed(const EdgePoint& seed) const override { return free_bits(seed.edge) & bit_at(seed.position); }
+  bool admits_seed(const EdgePoint& seed) const override {
+    return weights_[seed.edge] > 0 && (free_bits(seed.edge) & bit_at(seed.position));
+  }
 
   void add(const Streamline& streamline) override {
     for (std::size_t segment = 0; segment < streamline.triangles.size(); ++segment) {
       for (const auto& [edge, interval] : search_.near_segment(streamline, segment, separation_distance_)) {
-        const std::uint64_t added = bits_of(interval) & ~occupied_[edge];
-        if (!added) continue;
-        occupied_[edge] |= added;
-        occupied_weight_ += std::popcount(added) * weights_[edge];
-        update(edge);
+        occupy(edge, bits_of(interval));
       }
     }
+    // The line lies near itself, whatever overflow or rounding make of distances: so each line takes what was free.
+    for (const auto& point : streamline.points) occupy(point.edge, bit_at(point.position));
   }
 
   void retire_seed(const EdgePoint& seed) override {
@@ -105,6 +105,14 @@ class EdgeMask final : public Occupancy {
 
  private:
   std::uint64_t free_bits(std::int32_t edge) const { return ~(occupied_[edge] | retired_[edge]); }
+
+  void occupy(std::int32_t edge, std::uint64_t bits) {
+    const std::uint64_t added = bits & ~occupied_[edge];
+    if (!added) return;
+    occupied_[edge] |= added;
+    occupied_weight_ += static_cast<std::uint64_t>(std::popcount(added)) * weights_[edge];
+    update(edge);
+  }
 
   void update(std::int32_t edge) {
     const std::uint64_t free_weight = static_cast<std::uint64_t>(std::popcount(free_bits(edge))) * weights_[edge];

@@ -23,11 +23,11 @@ struct NamedLoop {
 /// An atrium-like surface with a smooth orientation field, in millimetres.
 struct DemoAtrium {
   std::vector<Vec3> vertices;
-  std::vector<Triangle> triangles;   ///< counter-clockwise seen from outside
-  std::vector<Vec3> directions;      ///< unit vector per triangle, tangent to it; the sign means nothing
-  std::vector<std::int32_t> regions; ///< region tag per triangle, see `region_names`
+  std::vector<Triangle> triangles;        ///< counter-clockwise seen from outside
+  std::vector<Vec3> directions;           ///< unit vector per triangle, tangent to it; the sign means nothing
+  std::vector<std::int32_t> regions;      ///< region tag per triangle, see `region_names`
   std::vector<std::string> region_names;  ///< index = tag; body, the four veins, appendage
-  std::vector<NamedLoop> loops;      ///< the mitral valve and the four pulmonary veins
+  std::vector<NamedLoop> loops;           ///< the mitral valve and the four pulmonary veins
 };
 
 /// Generates a dilated left atrium: a body, four pulmonary veins, an appendage and an open mitral valve, each opening

@@ -12,7 +12,7 @@ namespace pectinate {
 
 /// What was changed to make a surface of the input; every index is one of the input's.
 struct MeshRepairs {
-  std::vector<std::int32_t> degenerate_triangles;   ///< dropped: a repeated corner or no area
+  std::vector<std::int32_t> degenerate_triangles;   ///< dropped: a repeated corner, or no finite area
   std::vector<std::int32_t> duplicate_triangles;    ///< dropped: the same three corners as an earlier triangle
   std::vector<std::int32_t> non_finite_vertices;    ///< dropped, with the triangles that use them
   std::vector<std::int32_t> non_finite_triangles;   ///< dropped: a corner is not finite

@@ -46,8 +46,7 @@ Sample sample(const RoundCone& cone, const Vector& point) {
   };
   if (foot < 0) return sphere(cone.start, cone.start_radius);
   if (foot > cosine * length) return sphere(cone.end, cone.end_radius);
-  return {across * cosine + along * sine - cone.start_radius,
-          cosine / std::max(across, 1e-9) * radial + sine * axis};
+  return {across * cosine + along * sine - cone.start_radius, cosine / std::max(across, 1e-9) * radial + sine * axis};
 }
 
 Sample smooth_union(const Sample& a, const Sample& b, double width) {

@@ -48,12 +48,15 @@ class TetrahedronMarcher {
     const auto outside = std::stable_partition(sorted.begin(), sorted.end(), [&](int p) { return is_inside(p); });
     const auto [a, b, c, d] = sorted;
     switch (outside - sorted.begin()) {
-      case 1: return add_triangle(crossing(a, b), crossing(a, c), crossing(a, d), a);
+      case 1:
+        return add_triangle(crossing(a, b), crossing(a, c), crossing(a, d), a);
       case 2:
         add_triangle(crossing(a, c), crossing(a, d), crossing(b, c), a);
         return add_triangle(crossing(b, c), crossing(a, d), crossing(b, d), b);
-      case 3: return add_triangle(crossing(a, d), crossing(b, d), crossing(c, d), a);
-      default: return;
+      case 3:
+        return add_triangle(crossing(a, d), crossing(b, d), crossing(c, d), a);
+      default:
+        return;
     }
   }
 

@@ -43,15 +43,15 @@ Box bounds(const LeftAtrium& atrium) {
 }  // namespace
 
 LeftAtrium make_left_atrium() {
-  LeftAtrium atrium{
-      .chamber = {Vector(0, 0, 0), Vector(37, 27, 31)},
-      .vestibule = {Vector(3, -5, -6), Vector(12, -24, -29), 22, 18},
-      .mitral_valve = {},
-      .veins = {make_vein("left_superior_pulmonary_vein", {18, 8, 14}, {47, 21, 33}, 8),
-                make_vein("left_inferior_pulmonary_vein", {18, 9, -6}, {50, 30, -13}, 7.5),
-                make_vein("right_superior_pulmonary_vein", {-18, 6, 13}, {-48, 16, 31}, 8.5),
-                make_vein("right_inferior_pulmonary_vein", {-18, 9, -6}, {-48, 32, -13}, 7.5)},
-      .appendage = {{{Vector(22, -10, 8), Vector(44, -26, 12), 11, 9}, {Vector(44, -26, 12), Vector(44, -48, 2), 9, 6}}}};
+  LeftAtrium atrium{.chamber = {Vector(0, 0, 0), Vector(35, 26, 29.5)},
+                    .vestibule = {Vector(3, -5, -6), Vector(11.5, -23, -27.5), 21, 17},
+                    .mitral_valve = {},
+                    .veins = {make_vein("left_superior_pulmonary_vein", {17, 8, 13}, {45, 20, 31.5}, 7.5),
+                              make_vein("left_inferior_pulmonary_vein", {17, 8.5, -6}, {48, 28.5, -12.5}, 7),
+                              make_vein("right_superior_pulmonary_vein", {-17, 6, 12}, {-46, 15, 29.5}, 8),
+                              make_vein("right_inferior_pulmonary_vein", {-17, 8.5, -6}, {-46, 30.5, -12.5}, 7)},
+                    .appendage = {{{Vector(21, -9.5, 7.5), Vector(42, -25, 11.5), 10.5, 8.5},
+                                   {Vector(42, -25, 11.5), Vector(42, -46, 2), 8.5, 6}}}};
   atrium.mitral_valve = cut_end(atrium.vestibule, 0);
   return atrium;
 }

@@ -7,7 +7,8 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
-#include <string>
+#include <map>
+#include <utility>
 
 #include "pectinate/errors.hpp"
 
@@ -18,6 +19,7 @@ namespace {
 constexpr int closed_iterations = 3;  // enough to give the cuts something even to cut
 constexpr int open_iterations = 8;
 constexpr int polishing_iterations = 5;
+constexpr double mean_share = 0.937;    // of the length between splits and collapses: where edges settle in the mean
 constexpr double snapping_share = 0.1;  // of the edge length: avoids slivers along the cut
 
 struct MeshTraits : OpenMesh::DefaultTraitsDouble {
@@ -34,7 +36,9 @@ using Edge = OpenMesh::SmartEdgeHandle;
 using Halfedge = OpenMesh::SmartHalfedgeHandle;
 using Vertex = OpenMesh::SmartVertexHandle;
 
-OpenMesh::Vec3d openmesh_point(const Vector& point) { return {point.x(), point.y(), point.z()}; }
+OpenMesh::Vec3d openmesh_point(const Vector& point) {
+  return {point.x(), point.y(), point.z()};
+}
 
 Mesh build_mesh(const IndexedTriangles& input) {
   Mesh mesh;
@@ -44,7 +48,9 @@ Mesh build_mesh(const IndexedTriangles& input) {
   return mesh;
 }
 
-Vector area_vector(const Vector& a, const Vector& b, const Vector& c) { return (b - a).cross(c - a); }
+Vector area_vector(const Vector& a, const Vector& b, const Vector& c) {
+  return (b - a).cross(c - a);
+}
 
 bool similar_sides(const Vector& area_vector_a, const Vector& area_vector_b) {
   return area_vector_a.dot(area_vector_b) > 0.5 * area_vector_a.norm() * area_vector_b.norm();
@@ -58,7 +64,7 @@ double smallest_angle(const Vector& a, const Vector& b, const Vector& c) {
 class Remesher {
  public:
   Remesher(const IndexedTriangles& closed, const ImplicitSurface& surface, double edge_length)
-      : mesh_(build_mesh(closed)), surface_(surface), edge_length_(edge_length) {}
+      : mesh_(build_mesh(closed)), surface_(surface), edge_length_(edge_length / mean_share) {}
 
   void improve(int iterations) {
     for (int i = 0; i < iterations; ++i) {
@@ -189,8 +195,8 @@ class Remesher {
 
   bool flip_opens_angles(Edge edge) const {
     const auto [a, b, left, right] = diamond(edge);
-    const double now = std::min(smallest_angle(point(a), point(b), point(left)),
-                                smallest_angle(point(b), point(a), point(right)));
+    const double now =
+        std::min(smallest_angle(point(a), point(b), point(left)), smallest_angle(point(b), point(a), point(right)));
     const double flipped = std::min(smallest_angle(point(a), point(right), point(left)),
                                     smallest_angle(point(b), point(left), point(right)));
     return flipped > now * (1 + 1e-6);  // a tie must not flip forth and back
@@ -214,7 +220,9 @@ class Remesher {
 
   std::vector<std::int32_t> loop(const PlanarCut& cut) const {
     std::vector<std::int32_t> loop;
-    const auto starts_on_cut = [&](Halfedge halfedge) { return halfedge.is_boundary() && border(halfedge.from()) == &cut; };
+    const auto starts_on_cut = [&](Halfedge halfedge) {
+      return halfedge.is_boundary() && border(halfedge.from()) == &cut;
+    };
     for (const Halfedge start : mesh_.halfedges().filtered(starts_on_cut)) {
       if (loop.empty()) {
         // Border halfedges have the surface on their right: against their order.
@@ -233,6 +241,22 @@ class Remesher {
   double edge_length_;
 };
 
+/// Calls visit(a, b, cut) for each side of the loops.
+template <typename Visit>
+void visit_loop_sides(const CutTriangles& triangles, const Visit& visit) {
+  for (std::size_t cut = 0; cut < triangles.loops.size(); ++cut) {
+    const auto& loop = triangles.loops[cut];
+    for (std::size_t i = 0; i < loop.size(); ++i) visit(loop[i], loop[(i + 1) % loop.size()], cut);
+  }
+}
+
+/// The new vertex in the middle of each edge, by its ends, the smaller first.
+using Middles = std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t>;
+
+std::pair<std::int32_t, std::int32_t> edge_key(std::int32_t a, std::int32_t b) {
+  return std::minmax({a, b});
+}
+
 }  // namespace
 
 CutTriangles remesh(const IndexedTriangles& closed, const ImplicitSurface& surface, double edge_length) {
@@ -241,7 +265,34 @@ CutTriangles remesh(const IndexedTriangles& closed, const ImplicitSurface& surfa
   for (const PlanarCut& cut : surface.cuts) remesher.cut(cut);
   remesher.improve(open_iterations);
   remesher.polish(polishing_iterations);
-  return remesher.result();
+  CutTriangles result = remesher.result();
+  for (const auto& loop : result.loops) {
+    if (loop.empty()) throw SolverFailure("a cut through the implicit surface leaves no border; use shorter edges");
+  }
+  return result;
+}
+
+CutTriangles subdivide(const CutTriangles& coarse, const ImplicitSurface& surface) {
+  CutTriangles fine{coarse.surface, {}};
+  auto& [vertices, triangles] = fine.surface;
+  Middles middles;
+  const auto middle_of = [&](std::int32_t a, std::int32_t b, const PlanarCut* border) {
+    const auto [entry, is_new] = middles.try_emplace(edge_key(a, b), static_cast<std::int32_t>(vertices.size()));
+    const Vector middle = (vertices[a] + vertices[b]) / 2;
+    if (is_new) vertices.push_back(border ? project_to_border(surface, *border, middle) : project(surface, middle));
+    return entry->second;
+  };
+  fine.loops.resize(coarse.loops.size());
+  visit_loop_sides(coarse, [&](std::int32_t a, std::int32_t b, std::size_t cut) {
+    fine.loops[cut].push_back(a);
+    fine.loops[cut].push_back(middle_of(a, b, &surface.cuts[cut]));
+  });
+  triangles.clear();
+  for (const auto& [a, b, c] : coarse.surface.triangles) {
+    const auto ab = middle_of(a, b, nullptr), bc = middle_of(b, c, nullptr), ca = middle_of(c, a, nullptr);
+    triangles.insert(triangles.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+  }
+  return fine;
 }
 
 }  // namespace pectinate::detail

@@ -45,7 +45,8 @@ bool is_degenerate(const Triangle& t, std::span<const Vec3> vertices) {
   const Vector a = vector(vertices[t[1]]) - vector(vertices[t[0]]);
   const Vector b = vector(vertices[t[2]]) - vector(vertices[t[0]]);
   const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
-  return !(a.cross(b).norm() > least_relative_height * longest);
+  const double twice_area = a.cross(b).norm();
+  return !(twice_area > least_relative_height * longest && std::isfinite(twice_area));
 }
 
 /// Of triangles with the same three corners, all but the first.

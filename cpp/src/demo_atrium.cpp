@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+#include "pectinate/demo_atrium.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "detail/isosurface.hpp"
+#include "detail/left_atrium.hpp"
+#include "detail/remeshing.hpp"
+#include "detail/vec.hpp"
+#include "pectinate/errors.hpp"
+#include "pectinate/orientation_field.hpp"
+#include "pectinate/surface_mesh.hpp"
+
+namespace pectinate {
+namespace {
+
+using detail::Vector;
+
+constexpr double shortest_edge = 0.2, longest_edge = 4;
+/// Shorter edges are made by subdivision of triangles at least this large, which is many times faster.
+constexpr double shortest_remeshed_edge = 0.8;
+
+/// How far the fibres of each part reach, in mm, and how strong those of the body are beside them.
+constexpr double sleeve_reach = 7, annulus_reach = 9, appendage_reach = 5, bachmann_reach = 7;
+constexpr double body_strength = 0.08, bachmann_strength = 0.6;
+constexpr double bachmann_height = 10;
+
+void check(double edge_length) {
+  if (!(edge_length >= shortest_edge && edge_length <= longest_edge)) {
+    throw InvalidOption("edge_length is " + std::to_string(edge_length) + " mm, but must be in [0.2, 4]");
+  }
+}
+
+detail::CutTriangles make_triangles(const detail::ImplicitSurface& surface, double edge_length) {
+  int subdivisions = 0;
+  for (double edge = edge_length; edge < shortest_remeshed_edge; edge *= 2) ++subdivisions;
+  const double coarse = std::ldexp(edge_length, subdivisions);
+  auto triangles = detail::remesh(detail::extract_isosurface(surface, coarse), surface, coarse);
+  for (int i = 0; i < subdivisions; ++i) triangles = detail::subdivide(triangles, surface);
+  return triangles;
+}
+
+double fading(double distance, double reach) {
+  return std::exp(-std::pow(std::max(distance, 0.0) / reach, 2));
+}
+
+/// The sum of lines d d^T, each with its weight; the principal direction of such a sum turns smoothly.
+class LineBlend {
+ public:
+  /// Lines that run round an axis, tangent to the surface; they fade where it is seen from along the axis.
+  void add_circles(const Vector& axis, const Vector& normal, double weight) {
+    const Vector d = axis.cross(normal);
+    sum_ += weight * d * d.transpose();
+  }
+
+  SymmetricTensor tensor() const { return {sum_(0, 0), sum_(1, 1), sum_(2, 2), sum_(0, 1), sum_(1, 2), sum_(0, 2)}; }
+
+ private:
+  Eigen::Matrix3d sum_ = Eigen::Matrix3d::Zero();
+};
+
+/// Circles round the veins, the valve and the appendage; from front to back over the roof of the body; across the front
+/// below the roof, as Bachmann's bundle.
+SymmetricTensor fibre_tensor(const detail::LeftAtrium& atrium, const Vector& point, const Vector& normal) {
+  LineBlend blend;
+  for (const auto& vein : atrium.veins) {
+    const double weight = fading(detail::sample(vein.sleeve, point).value, sleeve_reach);
+    blend.add_circles(vein.sleeve.axis(), normal, weight);
+  }
+  const auto& valve = atrium.mitral_valve;
+  blend.add_circles(valve.normal, normal, fading(-valve.height(point), annulus_reach));
+  for (const auto& part : atrium.appendage) {
+    blend.add_circles(part.axis(), normal, fading(detail::sample(part, point).value, appendage_reach));
+  }
+  blend.add_circles(Vector::UnitX(), normal, body_strength);
+  const double front = std::clamp(-normal.y(), 0.0, 1.0);
+  const double band = fading(std::abs(point.z() - bachmann_height), bachmann_reach);
+  blend.add_circles(Vector::UnitZ(), normal, bachmann_strength * front * front * band);
+  return blend.tensor();
+}
+
+/// 0 for the body, 1 to 4 for the veins, 5 for the appendage: the part that the point is deepest in.
+std::int32_t region_of(const detail::LeftAtrium& atrium, const Vector& point) {
+  std::vector<double> depths{detail::sample_body(atrium, point).value};
+  for (const auto& vein : atrium.veins) depths.push_back(detail::sample(vein.sleeve, point).value);
+  depths.push_back(detail::sample_appendage(atrium, point).value);
+  return static_cast<std::int32_t>(std::min_element(depths.begin(), depths.end()) - depths.begin());
+}
+
+}  // namespace
+
+DemoAtrium make_demo_atrium(const DemoAtriumOptions& options) {
+  check(options.edge_length);
+  const auto atrium = detail::make_left_atrium();
+  const auto cut = make_triangles(detail::make_surface(atrium), options.edge_length);
+
+  DemoAtrium result;
+  result.triangles = cut.surface.triangles;
+  for (const auto& vertex : cut.surface.vertices) result.vertices.push_back(detail::vec3(vertex));
+  const SurfaceMesh mesh(result.vertices, result.triangles);
+  std::vector<SymmetricTensor> tensors;
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const auto& [a, b, c] = result.triangles[t];
+    const Vector centroid = (cut.surface.vertices[a] + cut.surface.vertices[b] + cut.surface.vertices[c]) / 3;
+    tensors.push_back(fibre_tensor(atrium, centroid, detail::vector(mesh.triangle_normals()[t])));
+    result.regions.push_back(region_of(atrium, centroid));
+  }
+  result.directions = OrientationField::from_triangle_tensors(mesh, tensors).directions();
+
+  result.region_names.emplace_back("body");
+  result.loops.push_back({"mitral_valve", cut.loops[0]});
+  for (std::size_t i = 0; i < atrium.veins.size(); ++i) {
+    result.region_names.push_back(atrium.veins[i].name);
+    result.loops.push_back({atrium.veins[i].name, cut.loops[i + 1]});
+  }
+  result.region_names.emplace_back("left_atrial_appendage");
+  return result;
+}
+
+}  // namespace pectinate
