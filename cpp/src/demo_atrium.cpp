@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "detail/isosurface.hpp"
@@ -24,8 +25,8 @@ constexpr double shortest_edge = 0.2, longest_edge = 4;
 constexpr double shortest_remeshed_edge = 0.8;
 
 /// How far the fibres of each part reach, in mm, and how strong those of the body are beside them.
-constexpr double sleeve_reach = 7, annulus_reach = 9, appendage_reach = 5, bachmann_reach = 7;
-constexpr double body_strength = 0.08, bachmann_strength = 0.6;
+constexpr double sleeve_reach = 7, annulus_reach = 9, appendage_reach = 5, bachmann_reach = 11;
+constexpr double body_strength = 0.08;
 constexpr double bachmann_height = 10;
 
 void check(double edge_length) {
@@ -51,10 +52,8 @@ double fading(double distance, double reach) {
 class LineBlend {
  public:
   /// Lines that run round an axis, tangent to the surface; they fade where it is seen from along the axis.
-  void add_circles(const Vector& axis, const Vector& normal, double weight) {
-    const Vector d = axis.cross(normal);
-    sum_ += weight * d * d.transpose();
-  }
+  void add_circles(const Vector& axis, const Vector& normal, double weight) { add_line(axis.cross(normal), weight); }
+  void add_line(const Vector& d, double weight) { sum_ += weight * d * d.transpose(); }
 
   SymmetricTensor tensor() const { return {sum_(0, 0), sum_(1, 1), sum_(2, 2), sum_(0, 1), sum_(1, 2), sum_(0, 2)}; }
 
@@ -75,10 +74,12 @@ SymmetricTensor fibre_tensor(const detail::LeftAtrium& atrium, const Vector& poi
   for (const auto& part : atrium.appendage) {
     blend.add_circles(part.axis(), normal, fading(detail::sample(part, point).value, appendage_reach));
   }
-  blend.add_circles(Vector::UnitX(), normal, body_strength);
+  // Bachmann's bundle: turned by degrees, not blended, since a sum of crossing lines would turn at once.
   const double front = std::clamp(-normal.y(), 0.0, 1.0);
   const double band = fading(std::abs(point.z() - bachmann_height), bachmann_reach);
-  blend.add_circles(Vector::UnitZ(), normal, bachmann_strength * front * front * band);
+  const double turn = std::numbers::pi / 2 * front * front * band;
+  const Vector over_the_roof = Vector::UnitX().cross(normal);
+  blend.add_line(std::cos(turn) * over_the_roof + std::sin(turn) * normal.cross(over_the_roof), body_strength);
   return blend.tensor();
 }
 

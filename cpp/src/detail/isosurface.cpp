@@ -29,7 +29,8 @@ class Grid {
   int index(int i, int j, int k) const { return (k * (cell_counts_[1] + 1) + j) * (cell_counts_[0] + 1) + i; }
   Vector point(int index) const {
     const int nx = cell_counts_[0] + 1, ny = cell_counts_[1] + 1;
-    return origin_ + cell_size_ * Vector(index % nx, index / nx % ny, index / (nx * ny));
+    const int i = index % nx, j = index / nx % ny, k = index / (nx * ny);
+    return origin_ + cell_size_ * Vector(i, j, k);
   }
 
  private:

@@ -1,0 +1,160 @@
+"""Soft light for drawings: computed per vertex before drawing, and from the depth map after it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Color = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Style:
+    """Colours and light of a drawing. Colours are display RGB, 0 to 1.
+
+    Parameters
+    ----------
+    surface_color, inside_color, tube_color : tuple of 3 float
+        Colour in full light of the surface, of its inside seen through openings, and of the tubes.
+    background_color : tuple of 3 float
+        Colour of the paper.
+    tube_gloss : float
+        Strength of the highlight along the tubes, from 0 to 1.
+    fold_darkness : float
+        How much folds and hollows are darkened, from 0 (not at all) to 1 (to black).
+    edge_darkness : float
+        How much the surface darkens where it turns away from the viewer, from 0 to 1.
+    """
+
+    surface_color: Color = (0.93, 0.90, 0.86)
+    inside_color: Color = (0.62, 0.55, 0.53)
+    tube_color: Color = (0.10, 0.09, 0.09)
+    background_color: Color = (1.0, 1.0, 1.0)
+    tube_gloss: float = 0.2
+    fold_darkness: float = 0.45
+    edge_darkness: float = 0.35
+
+
+# Direction towards each light in picture coordinates, with its strength: upper left, right, viewer.
+_LIGHTS = (((-0.55, 0.65, 0.53), 0.36), ((0.80, 0.05, 0.60), 0.16), ((0.0, 0.0, 1.0), 0.26))
+_SKY, _GROUND = 0.40, 0.24
+_GLOSS_DIRECTION, _GLOSS_EXPONENT = (-0.30, 0.36, 0.88), 12
+
+
+def vertex_normals(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Unit normals of vertices: the mean of their triangles' normals, weighted by area.
+
+    Parameters
+    ----------
+    vertices : (V, 3) float64
+        Positions.
+    triangles : (T, 3) int64
+        Vertices of each triangle, counter-clockwise seen from outside.
+
+    Returns
+    -------
+    (V, 3) float64
+        Zero where a vertex has no triangle, or where its triangles cancel out.
+    """
+    doubled_areas = triangle_normals(vertices, triangles)
+    sums = np.zeros_like(vertices)
+    for axis in range(3):
+        weights = np.repeat(doubled_areas[:, axis], 3)
+        sums[:, axis] = np.bincount(triangles.ravel(), weights=weights, minlength=len(vertices))
+    return unit(sums)
+
+
+def triangle_normals(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Normals of triangles, (T, 3) float64, of length twice the area."""
+    a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
+    return np.cross(b - a, c - a)
+
+
+def unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Vectors scaled to length 1; zero vectors stay zero."""
+    lengths = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return vectors / np.where(lengths == 0, 1.0, lengths)
+
+
+def light(normals: NDArray[np.float64], edge_darkness: float) -> NDArray[np.float64]:
+    """Brightness of matt vertices under three lights fixed to the camera and a brighter sky than ground.
+
+    Parameters
+    ----------
+    normals : (V, 3) float64
+        Unit normals in picture coordinates, on the side that is seen.
+    edge_darkness : float
+        Share of light that is lost where the surface turns away from the viewer.
+
+    Returns
+    -------
+    (V,) float64
+        1 is full light.
+    """
+    height = 0.5 + 0.5 * normals[:, 1]
+    brightness = _GROUND + (_SKY - _GROUND) * height
+    for direction, strength in _LIGHTS:
+        brightness += strength * np.clip(normals @ direction, 0.0, None)
+    turned_away = 1.0 - np.clip(normals[:, 2], 0.0, 1.0)
+    return np.asarray(brightness * (1.0 - edge_darkness * turned_away**3))
+
+
+def gloss(normals: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Strength of a soft highlight, (V,) float64 in 0 to 1, that shows dark tubes to be round."""
+    return np.asarray(np.clip(normals @ _GLOSS_DIRECTION, 0.0, 1.0) ** _GLOSS_EXPONENT)
+
+
+def shaded(color: ArrayLike, brightness: NDArray[np.float64], highlight: ArrayLike = 0.0) -> NDArray[np.float64]:
+    """Display RGB (V, 3) of vertices of one colour (3,) or one each (V, 3)."""
+    lit = np.asarray(color, dtype=np.float64) * brightness[:, None] + np.atleast_1d(highlight)[:, None]
+    return np.asarray(np.clip(lit, 0.0, 1.0))
+
+
+def fold_shadow(depth: NDArray[np.float32], block: int, radius: int, reach: float) -> NDArray[np.float32]:
+    """How far each pixel lies below its surroundings: the difference of the depth map to its blurred self.
+
+    Parameters
+    ----------
+    depth : (block * h, block * w) float32
+        Depth in mm; infinite where there is nothing, which takes no part in the blur.
+    block : int
+        Pixels across one pixel of the finished picture; the blur is computed on the finished pixels.
+    radius : int
+        Half width of the blur in finished pixels.
+    reach : float
+        Difference in mm that counts as 1.
+
+    Returns
+    -------
+    (block * h, block * w) float32
+        From 0 (level with its surroundings or above them) to 1.
+    """
+    seen = np.isfinite(depth)
+    filled = np.where(seen, depth, np.float32(0))
+    weights, sums = box_downsample(seen, block), box_downsample(filled, block)
+    for _ in range(3):
+        weights, sums = _box_blur(weights, radius), _box_blur(sums, radius)
+    mean = sums / np.maximum(weights, np.finfo(np.float32).tiny)
+    below = filled - np.repeat(np.repeat(mean, block, axis=0), block, axis=1)
+    return np.where(seen, np.clip(below / reach, 0.0, 1.0), 0.0).astype(np.float32)
+
+
+def box_downsample(image: NDArray[np.generic], block: int) -> NDArray[np.float32]:
+    """Mean over blocks of pixels of an image (block * h, block * w) or (block * h, block * w, c)."""
+    height, width = image.shape[0] // block, image.shape[1] // block
+    blocks = image.reshape(height, block, width, block, *image.shape[2:])
+    return np.asarray(blocks.mean(axis=(1, 3), dtype=np.float32))
+
+
+def _box_blur(image: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
+    """Mean over a square window, counting what lies beyond the border as zero."""
+    for axis in (0, 1):
+        length = image.shape[axis]
+        padding = [(0, 0), (0, 0)]
+        padding[axis] = (radius + 1, radius)
+        total = np.cumsum(np.pad(image, padding), axis=axis, dtype=np.float64)
+        ahead = np.take(total, range(2 * radius + 1, 2 * radius + 1 + length), axis=axis)
+        image = ((ahead - np.take(total, range(length), axis=axis)) / (2 * radius + 1)).astype(np.float32)
+    return image
