@@ -42,7 +42,8 @@ LengthHistogram length_histogram(std::span<const double> lengths, int bin_count)
   const double longest = lengths.empty() ? 0 : *std::max_element(lengths.begin(), lengths.end());
   LengthHistogram histogram;
   histogram.counts.assign(bin_count, 0);
-  for (int i = 0; i <= bin_count; ++i) histogram.edges.push_back(longest * i / bin_count);
+  for (int i = 0; i < bin_count; ++i) histogram.edges.push_back(longest * i / bin_count);
+  histogram.edges.push_back(longest);
   for (const double length : lengths) {
     const auto above = std::upper_bound(histogram.edges.begin(), histogram.edges.end(), length);
     const auto bin = std::min<std::int64_t>(above - histogram.edges.begin(), bin_count) - 1;

@@ -24,9 +24,12 @@ void ThreadPool::run(std::int64_t count, const Work& work) {
   do_share(0);
   std::unique_lock lock(mutex_);
   done_.wait(lock, [&] { return busy_ == 0; });
+  std::exception_ptr first;
   for (auto& failure : failures_) {
-    if (failure) std::rethrow_exception(std::exchange(failure, nullptr));
+    const auto exception = std::exchange(failure, nullptr);  // the next run starts without any
+    if (!first) first = exception;
   }
+  if (first) std::rethrow_exception(first);
 }
 
 void ThreadPool::serve(std::stop_token stop, int thread) {
