@@ -22,21 +22,16 @@ std::function<bool(double)> with_signals(const py::object& progress) {
   };
 }
 
-Placement place(const SurfaceMesh& mesh, const OrientationField& field, double separation_distance,
-                PlacementMethod method, int seed_count, double seed_distance_factor, double abrupt_turn_angle,
-                std::int64_t max_steps, std::uint64_t random_seed, int thread_count, const py::object& progress) {
-  const PlacementOptions options{separation_distance,   method,    seed_count,  seed_distance_factor,
-                                 abrupt_turn_angle,     max_steps, random_seed, thread_count,
-                                 with_signals(progress)};
-  const py::gil_scoped_release release;
-  return place_streamlines(mesh, field, options);
-}
-
 void bind_enumerations(py::module_& module) {
   py::native_enum<PlacementMethod>(module, "PlacementMethod", "enum.Enum")
       .value("random", PlacementMethod::random)
       .value("neighborhood", PlacementMethod::neighborhood)
       .value("distance", PlacementMethod::distance)
+      .value("longest", PlacementMethod::longest)
+      .finalize();
+  py::native_enum<OccupancyModel>(module, "OccupancyModel", "enum.Enum")
+      .value("exact", OccupancyModel::exact)
+      .value("edge_mask", OccupancyModel::edge_mask)
       .finalize();
   py::native_enum<PlacementEnd>(module, "PlacementEnd", "enum.Enum")
       .value("complete", PlacementEnd::complete)
@@ -80,8 +75,12 @@ void bind_result(py::module_& module) {
       .def(py::init<>())
       .def_readonly("separation_distance", &PlacementOptions::separation_distance)
       .def_readonly("method", &PlacementOptions::method)
+      .def_readonly("occupancy", &PlacementOptions::occupancy)
       .def_readonly("seed_count", &PlacementOptions::seed_count)
       .def_readonly("seed_distance_factor", &PlacementOptions::seed_distance_factor)
+      .def_readonly("seed_clearance", &PlacementOptions::seed_clearance)
+      .def_readonly("test_distance", &PlacementOptions::test_distance)
+      .def_readonly("minimum_length", &PlacementOptions::minimum_length)
       .def_readonly("abrupt_turn_angle", &PlacementOptions::abrupt_turn_angle)
       .def_readonly("max_steps", &PlacementOptions::max_steps)
       .def_readonly("random_seed", &PlacementOptions::random_seed)
@@ -107,13 +106,38 @@ void bind_placement(py::module_& module) {
   bind_statistics(module);
   bind_result(module);
   const PlacementOptions defaults;
-  module.def("place_streamlines", &place, py::arg("mesh"), py::arg("field"), py::kw_only(),
-             py::arg("separation_distance") = defaults.separation_distance, py::arg("method") = defaults.method,
-             py::arg("seed_count") = defaults.seed_count,
-             py::arg("seed_distance_factor") = defaults.seed_distance_factor,
-             py::arg("abrupt_turn_angle") = defaults.abrupt_turn_angle, py::arg("max_steps") = defaults.max_steps,
-             py::arg("random_seed") = defaults.random_seed, py::arg("thread_count") = defaults.thread_count,
-             py::arg("progress") = py::none());
+  module.def(
+      "place_streamlines",
+      [](const SurfaceMesh& mesh, const OrientationField& field, double separation_distance,
+         std::vector<double> separation_distances, PlacementMethod method, OccupancyModel occupancy, int seed_count,
+         double seed_distance_factor, double seed_clearance, double test_distance, double minimum_length,
+         double abrupt_turn_angle, std::int64_t max_steps, std::uint64_t random_seed, int thread_count,
+         const py::object& progress) {
+        const PlacementOptions options{separation_distance,
+                                       std::move(separation_distances),
+                                       method,
+                                       occupancy,
+                                       seed_count,
+                                       seed_distance_factor,
+                                       seed_clearance,
+                                       test_distance,
+                                       minimum_length,
+                                       abrupt_turn_angle,
+                                       max_steps,
+                                       random_seed,
+                                       thread_count,
+                                       with_signals(progress)};
+        const py::gil_scoped_release release;
+        return place_streamlines(mesh, field, options);
+      },
+      py::arg("mesh"), py::arg("field"), py::kw_only(), py::arg("separation_distance") = defaults.separation_distance,
+      py::arg("separation_distances") = defaults.separation_distances, py::arg("method") = defaults.method,
+      py::arg("occupancy") = defaults.occupancy, py::arg("seed_count") = defaults.seed_count,
+      py::arg("seed_distance_factor") = defaults.seed_distance_factor,
+      py::arg("seed_clearance") = defaults.seed_clearance, py::arg("test_distance") = defaults.test_distance,
+      py::arg("minimum_length") = defaults.minimum_length, py::arg("abrupt_turn_angle") = defaults.abrupt_turn_angle,
+      py::arg("max_steps") = defaults.max_steps, py::arg("random_seed") = defaults.random_seed,
+      py::arg("thread_count") = defaults.thread_count, py::arg("progress") = py::none());
 }
 
 }  // namespace pectinate::bindings

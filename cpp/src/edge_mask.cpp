@@ -34,7 +34,18 @@ int nth_set_bit(std::uint64_t bits, std::uint64_t n) {
   return std::countr_zero(bits);
 }
 
-std::vector<std::uint64_t> whole_weights(const SurfaceMesh& mesh, const StreamlineTracer& tracer) {
+constexpr std::int32_t none = -1;
+
+std::vector<std::int32_t> find_start_triangles(const SurfaceMesh& mesh, const StreamlineTracer& tracer) {
+  std::vector<std::int32_t> triangles;
+  triangles.reserve(mesh.edges().size());
+  for (std::int32_t e = 0; e < static_cast<std::int32_t>(mesh.edges().size()); ++e) {
+    triangles.push_back(tracer.start_triangle(e).value_or(none));
+  }
+  return triangles;
+}
+
+std::vector<std::uint64_t> whole_weights(const SurfaceMesh& mesh, const std::vector<std::int32_t>& start_triangles) {
   const auto& lengths = mesh.edge_lengths();
   double total = 0;
   for (const double length : lengths) total += length;
@@ -42,7 +53,7 @@ std::vector<std::uint64_t> whole_weights(const SurfaceMesh& mesh, const Streamli
   std::vector<std::uint64_t> weights;
   weights.reserve(lengths.size());
   for (std::size_t e = 0; e < lengths.size(); ++e) {
-    const bool can_start = tracer.start_triangle(static_cast<std::int32_t>(e)).has_value();
+    const bool can_start = start_triangles[e] != none;
     weights.push_back(can_start ? std::max<std::uint64_t>(1, std::llround(lengths[e] * scale)) : 0);
   }
   return weights;
@@ -51,9 +62,10 @@ std::vector<std::uint64_t> whole_weights(const SurfaceMesh& mesh, const Streamli
 class EdgeMask final : public Occupancy {
  public:
   EdgeMask(const SurfaceMesh& mesh, const StreamlineTracer& tracer)
-      : separation_distance_(tracer.options().separation_distance),
+      : tracer_(tracer),
         search_(mesh),
-        weights_(whole_weights(mesh, tracer)),
+        start_triangles_(find_start_triangles(mesh, tracer)),
+        weights_(whole_weights(mesh, start_triangles_)),
         occupied_(weights_.size(), 0),
         retired_(weights_.size(), 0),
         partly_free_(weights_.size()),
@@ -64,17 +76,18 @@ class EdgeMask final : public Occupancy {
     }
   }
 
-  bool admits(std::int32_t, const EdgePoint& point) const override {
-    return !(occupied_[point.edge] & bit_at(point.position));
+  bool admits(std::int32_t, double, const EdgePoint& exit) const override {
+    return !(occupied_[exit.edge] & bit_at(exit.position));
   }
 
-  bool admits_seed(const EdgePoint& seed) const override {
-    return weights_[seed.edge] > 0 && (free_bits(seed.edge) & bit_at(seed.position));
+  bool admits_seed(const Seed& seed) const override {
+    return weights_[seed.point.edge] > 0 && (free_bits(seed.point.edge) & bit_at(seed.point.position));
   }
 
   void add(const Streamline& streamline) override {
     for (std::size_t segment = 0; segment < streamline.triangles.size(); ++segment) {
-      for (const auto& [edge, interval] : search_.near_segment(streamline, segment, separation_distance_)) {
+      const double separation = tracer_.separation_distance(streamline.triangles[segment]);
+      for (const auto& [edge, interval] : search_.near_segment(streamline, segment, separation)) {
         occupy(edge, bits_of(interval));
       }
     }
@@ -82,12 +95,12 @@ class EdgeMask final : public Occupancy {
     for (const auto& point : streamline.points) occupy(point.edge, bit_at(point.position));
   }
 
-  void retire_seed(const EdgePoint& seed) override {
-    retired_[seed.edge] |= bit_at(seed.position);
-    update(seed.edge);
+  void retire_seed(const Seed& seed) override {
+    retired_[seed.point.edge] |= bit_at(seed.point.position);
+    update(seed.point.edge);
   }
 
-  std::optional<EdgePoint> draw_seed(SeedRegion region, Random& random) const override {
+  std::optional<Seed> draw_seed(SeedRegion region, Random& random) const override {
     const std::uint64_t partly = region == SeedRegion::wholly_free ? 0 : partly_free_.total();
     const std::uint64_t wholly = region == SeedRegion::partly_free ? 0 : wholly_free_.total();
     if (partly + wholly == 0) return std::nullopt;
@@ -96,7 +109,7 @@ class EdgeMask final : public Occupancy {
         static_cast<std::int32_t>(offset < partly ? partly_free_.find(offset) : wholly_free_.find(offset - partly));
     const std::uint64_t bits = free_bits(edge);
     const int bit = nth_set_bit(bits, random.below(static_cast<std::uint64_t>(std::popcount(bits))));
-    return EdgePoint{edge, detail::clamp_position((bit + random.unit()) / bit_count)};
+    return Seed{{edge, detail::clamp_position((bit + random.unit()) / bit_count)}, start_triangles_[edge]};
   }
 
   double coverage() const override {
@@ -121,9 +134,10 @@ class EdgeMask final : public Occupancy {
     wholly_free_.set(edge, untouched ? free_weight : 0);
   }
 
-  double separation_distance_;
+  const StreamlineTracer& tracer_;
   detail::EdgeSearch search_;
-  std::vector<std::uint64_t> weights_;  // per sub-segment of each edge; 0 where no streamline can start
+  std::vector<std::int32_t> start_triangles_;  // per edge
+  std::vector<std::uint64_t> weights_;         // per sub-segment of each edge; 0 where no streamline can start
   std::vector<std::uint64_t> occupied_, retired_;
   detail::WeightedSet partly_free_, wholly_free_;
   std::uint64_t total_weight_ = 0, occupied_weight_ = 0;

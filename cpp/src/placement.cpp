@@ -3,13 +3,17 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <string>
 
+#include "detail/chord_occupancy.hpp"
 #include "detail/edge_point.hpp"
+#include "detail/longest_first.hpp"
 #include "detail/random.hpp"
 #include "detail/seed_ring.hpp"
 #include "detail/thread_pool.hpp"
+#include "detail/vec.hpp"
 #include "pectinate/errors.hpp"
 #include "pectinate/occupancy.hpp"
 
@@ -20,20 +24,43 @@ using Clock = std::chrono::steady_clock;
 using WorkspacePointer = decltype(StreamlineTracer::make_workspace());
 
 constexpr auto progress_interval = std::chrono::milliseconds(50);
+/// More would only take memory and keep the callback waiting.
+constexpr int most_seeds = 1'000'000;
 /// Candidates that a thread traces between two looks at the clock.
 constexpr std::int64_t candidates_per_look = 8;
 
 void check(const PlacementOptions& options) {
-  if (options.seed_count < 1) {
-    throw InvalidOption("seed_count is " + std::to_string(options.seed_count) + ", but must be at least 1");
+  if (options.seed_count < 1 || options.seed_count > most_seeds) {
+    throw InvalidOption("seed_count is " + std::to_string(options.seed_count) + ", but must be in [1, 1000000]");
   }
   if (!(options.seed_distance_factor >= 1 && options.seed_distance_factor < 1e6)) {
     throw InvalidOption("seed_distance_factor is " + std::to_string(options.seed_distance_factor) +
                         ", but must be at least 1 and finite: nearer than d_sep nothing is free");
   }
+  if (options.method == PlacementMethod::longest && options.occupancy != OccupancyModel::exact) {
+    throw InvalidOption("method longest needs exact occupancy; choose another method for the edge mask");
+  }
+  if (!(options.seed_clearance >= 1 && options.seed_clearance <= 2)) {
+    throw InvalidOption("seed_clearance is " + std::to_string(options.seed_clearance) + ", but must be in [1, 2]");
+  }
+  if (!(options.test_distance > 0 && options.test_distance <= 1)) {
+    throw InvalidOption("test_distance is " + std::to_string(options.test_distance) + ", but must be in (0, 1]");
+  }
+  const bool strict = options.seed_clearance == 1 && options.test_distance == 1;
+  if (!strict && options.occupancy != OccupancyModel::exact) {
+    throw InvalidOption("seed_clearance and test_distance need exact occupancy; leave them at 1 for the edge mask");
+  }
+  if (!(options.minimum_length >= 0 && std::isfinite(options.minimum_length))) {
+    throw InvalidOption("minimum_length is " + std::to_string(options.minimum_length) +
+                        ", but must be finite and not negative");
+  }
   if (options.thread_count < 1 || options.thread_count > 1024) {
     throw InvalidOption("thread_count is " + std::to_string(options.thread_count) + ", but must be in [1, 1024]");
   }
+}
+
+Clearance clearance_of(const PlacementOptions& options) {
+  return {options.test_distance, options.seed_clearance};
 }
 
 /// Asks the user's callback now and then whether to go on.
@@ -41,10 +68,13 @@ class Progress {
  public:
   explicit Progress(const std::function<bool(double)>& callback) : callback_(callback) {}
 
-  bool is_cancelled(double coverage) {
+  /// `coverage` is a function: counting may take a while.
+  template <class Coverage>
+  bool is_cancelled(const Coverage& coverage) {
     if (!callback_ || cancelled_ || Clock::now() - last_call_ < progress_interval) return cancelled_;
+    cancelled_ = !callback_(coverage());
     last_call_ = Clock::now();
-    return cancelled_ = !callback_(coverage);
+    return cancelled_;
   }
 
  private:
@@ -56,10 +86,10 @@ class Progress {
 /// Draws the seed points of one step by the paper's three methods.
 class SeedSource {
  public:
-  SeedSource(const SurfaceMesh& mesh, const PlacementOptions& options)
+  SeedSource(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const PlacementOptions& options)
       : method_(options.method), random_(options.random_seed) {
     if (method_ == PlacementMethod::distance) {
-      ring_.emplace(mesh, options.seed_distance_factor * options.separation_distance);
+      ring_.emplace(mesh, tracer, options.seed_distance_factor);
     }
   }
 
@@ -68,8 +98,8 @@ class SeedSource {
   }
 
   /// Up to `count` points; fewer only if nothing is free.
-  std::vector<EdgePoint> draw(const Occupancy& occupancy, int count) {
-    std::vector<EdgePoint> seeds;
+  std::vector<Seed> draw(const Occupancy& occupancy, int count) {
+    std::vector<Seed> seeds;
     seeds.reserve(count);
     for (int i = 0; i < count; ++i) {
       const auto seed = draw_one(occupancy);
@@ -80,8 +110,8 @@ class SeedSource {
   }
 
  private:
-  std::optional<EdgePoint> draw_one(const Occupancy& occupancy) {
-    std::optional<EdgePoint> seed;
+  std::optional<Seed> draw_one(const Occupancy& occupancy) {
+    std::optional<Seed> seed;
     if (ring_) seed = ring_->draw(occupancy, random_);
     if (method_ == PlacementMethod::neighborhood) seed = occupancy.draw_seed(SeedRegion::partly_free, random_);
     if (!seed && method_ != PlacementMethod::random) seed = occupancy.draw_seed(SeedRegion::wholly_free, random_);
@@ -96,22 +126,22 @@ class SeedSource {
 /// Traces the candidates of one step and finds the longest; of equals, the first drawn.
 class Contest {
  public:
-  Contest(const StreamlineTracer& tracer, int thread_count)
-      : tracer_(tracer), pool_(thread_count), desks_(pool_.thread_count()) {}
+  Contest(const StreamlineTracer& tracer, double minimum_length, int thread_count)
+      : tracer_(tracer), minimum_length_(minimum_length), pool_(thread_count), desks_(pool_.thread_count()) {}
 
   struct Outcome {
-    const Streamline* longest = nullptr;  // none if no candidate has a segment
-    std::vector<EdgePoint> useless;       // seeds of candidates without one
+    const Streamline* longest = nullptr;  // none if no candidate is long enough
+    std::vector<Seed> useless;            // seeds of candidates that are not
   };
 
   /// None if it was cancelled.
-  std::optional<Outcome> hold(const std::vector<EdgePoint>& seeds, const Occupancy& occupancy, Progress& progress) {
+  std::optional<Outcome> hold(const std::vector<Seed>& seeds, const Occupancy& occupancy, Progress& progress) {
     for (auto& desk : desks_) desk.winner = none;
     lengths_.assign(seeds.size(), 0);
     const auto slice = candidates_per_look * pool_.thread_count();
     const auto count = static_cast<std::int64_t>(seeds.size());
     for (std::int64_t first = 0; first < count; first += slice) {
-      if (progress.is_cancelled(occupancy.coverage())) return std::nullopt;
+      if (progress.is_cancelled([&] { return occupancy.coverage(); })) return std::nullopt;
       pool_.run(std::min(slice, count - first), [&](std::int64_t index, int thread) {
         trace(first + index, seeds[first + index], occupancy, desks_[thread]);
       });
@@ -129,9 +159,9 @@ class Contest {
     std::int64_t winner = none;
   };
 
-  void trace(std::int64_t index, const EdgePoint& seed, const Occupancy& occupancy, Desk& desk) {
+  void trace(std::int64_t index, const Seed& seed, const Occupancy& occupancy, Desk& desk) {
     const auto& line = tracer_.trace(seed, &occupancy, *desk.current);
-    lengths_[index] = line.triangles.empty() ? 0 : line.length;
+    lengths_[index] = line.length >= minimum_length_ ? line.length : 0;
     if (lengths_[index] > 0 && (desk.winner == none || lengths_[index] > lengths_[desk.winner])) {
       std::swap(desk.best, desk.current);
       desk.best_line = &line;
@@ -139,7 +169,7 @@ class Contest {
     }
   }
 
-  Outcome judge(const std::vector<EdgePoint>& seeds) const {
+  Outcome judge(const std::vector<Seed>& seeds) const {
     Outcome outcome;
     const auto winner = std::max_element(lengths_.begin(), lengths_.end()) - lengths_.begin();
     for (const auto& desk : desks_) {
@@ -152,6 +182,7 @@ class Contest {
   }
 
   const StreamlineTracer& tracer_;
+  double minimum_length_;
   detail::ThreadPool pool_;
   std::vector<Desk> desks_;
   std::vector<double> lengths_;
@@ -193,19 +224,29 @@ double directed_area(const SurfaceMesh& mesh, const OrientationField& field) {
   return area;
 }
 
-}  // namespace
+/// The mean of d_sep over the length of the streamlines.
+double mean_separation(const StreamlineTracer& tracer, const Placement& placement) {
+  const auto& constant = tracer.options();
+  if (constant.separation_distances.empty()) return constant.separation_distance;
+  double moment = 0, length = 0;
+  for (std::size_t i = 0; i + 1 < placement.offsets.size(); ++i) {
+    for (auto p = placement.offsets[i]; p + 1 < placement.offsets[i + 1]; ++p) {
+      const double piece = (detail::vector(placement.points[p + 1]) - detail::vector(placement.points[p])).norm();
+      moment += piece * tracer.separation_distance(placement.segment_triangles[p - static_cast<std::int64_t>(i)]);
+      length += piece;
+    }
+  }
+  return length > 0 ? moment / length : 0;
+}
 
-Placement place_streamlines(const SurfaceMesh& mesh, const OrientationField& field, const PlacementOptions& options) {
-  check(options);
-  const StreamlineTracer tracer(mesh, field,
-                                {options.separation_distance, options.abrupt_turn_angle, options.max_steps});
-  const auto occupancy = make_edge_mask(mesh, tracer);
-  SeedSource source(mesh, options);
-  Contest contest(tracer, options.thread_count);
-  Progress progress(options.progress);
-
-  Placement placement;
-  placement.offsets.push_back(0);
+/// The paper's loop. Returns the coverage.
+double place_by_contest(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const PlacementOptions& options,
+                        Progress& progress, Placement& placement) {
+  const auto occupancy = options.occupancy == OccupancyModel::exact
+                             ? make_exact_occupancy(mesh, tracer, clearance_of(options))
+                             : make_edge_mask(mesh, tracer);
+  SeedSource source(mesh, tracer, options);
+  Contest contest(tracer, options.minimum_length, options.thread_count);
   while (true) {
     const auto seeds = source.draw(*occupancy, options.seed_count);
     if (seeds.empty()) break;
@@ -214,15 +255,41 @@ Placement place_streamlines(const SurfaceMesh& mesh, const OrientationField& fie
       placement.end = PlacementEnd::cancelled;
       break;
     }
-    // A seed from which no segment starts never gets one, because occupancy only grows.
+    // A seed that gives no streamline never gives one, because occupancy only grows.
     for (const auto& seed : outcome->useless) occupancy->retire_seed(seed);
     if (!outcome->longest) continue;
     append(mesh, *outcome->longest, placement);
     occupancy->add(*outcome->longest);
     source.add(*outcome->longest);
   }
+  return occupancy->coverage();
+}
+
+/// The longest first. Returns the coverage.
+double place_longest(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const PlacementOptions& options,
+                     Progress& progress, Placement& placement) {
+  detail::ChordOccupancy occupancy(mesh, tracer, clearance_of(options));
+  const bool complete = detail::place_longest_first(
+      mesh, tracer, options.minimum_length, occupancy, [&](const Streamline& line) { append(mesh, line, placement); },
+      [&] { return !progress.is_cancelled([&] { return occupancy.coverage(); }); });
+  if (!complete) placement.end = PlacementEnd::cancelled;
+  return occupancy.coverage();
+}
+
+}  // namespace
+
+Placement place_streamlines(const SurfaceMesh& mesh, const OrientationField& field, const PlacementOptions& options) {
+  check(options);
+  const StreamlineTracer tracer(
+      mesh, field,
+      {options.separation_distance, options.separation_distances, options.abrupt_turn_angle, options.max_steps});
+  Progress progress(options.progress);
+  Placement placement;
+  placement.offsets.push_back(0);
+  const auto place = options.method == PlacementMethod::longest ? place_longest : place_by_contest;
+  const double coverage = place(mesh, tracer, options, progress, placement);
   placement.statistics = placement_statistics(placement.lengths, placement.stop_reasons, directed_area(mesh, field),
-                                              options.separation_distance, occupancy->coverage());
+                                              mean_separation(tracer, placement), coverage);
   placement.options = options;
   placement.options.progress = nullptr;
   return placement;

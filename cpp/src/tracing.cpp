@@ -9,6 +9,7 @@
 #include "detail/crossings.hpp"
 #include "detail/edge_point.hpp"
 #include "detail/self_approach.hpp"
+#include "detail/vec.hpp"
 #include "detail/visited_chords.hpp"
 #include "pectinate/errors.hpp"
 #include "pectinate/occupancy.hpp"
@@ -22,18 +23,34 @@ using Workspace = StreamlineTracer::Workspace;
 /// Below this share of the bounding box a separation distance is a matter of units, not of drawing.
 constexpr double least_relative_separation = 1e-6;
 
+void check_separation(double separation, double diagonal, const std::string& name) {
+  if (std::isfinite(separation) && separation >= least_relative_separation * diagonal) return;
+  throw InvalidOption(name + " is " + std::to_string(separation) +
+                      ", but must be finite and at least 1e-6 of the mesh's diagonal, " + std::to_string(diagonal) +
+                      "; give it in the unit of the mesh");
+}
+
+void check_separations(const SurfaceMesh& mesh, const TracingOptions& options) {
+  const double diagonal = mesh.bounding_box_diagonal();
+  const auto& separations = options.separation_distances;
+  if (separations.empty()) {
+    check_separation(options.separation_distance, diagonal, "separation_distance");
+  } else if (separations.size() != mesh.triangle_count()) {
+    throw InvalidOption("separation_distances has " + std::to_string(separations.size()) +
+                        " values, but the mesh has " + std::to_string(mesh.triangle_count()) +
+                        " triangles; give one for each");
+  }
+  for (std::size_t t = 0; t < separations.size(); ++t) {
+    check_separation(separations[t], diagonal, "separation_distance of triangle " + std::to_string(t));
+  }
+}
+
 void check(const SurfaceMesh& mesh, const OrientationField& field, const TracingOptions& options) {
   if (field.directions().size() != mesh.triangle_count()) {
     throw InvalidField("the field has " + std::to_string(field.directions().size()) + " directions, but the mesh has " +
                        std::to_string(mesh.triangle_count()) + " triangles; build the field from this mesh");
   }
-  const double d = options.separation_distance, diagonal = mesh.bounding_box_diagonal();
-  if (!std::isfinite(d) || !(d >= least_relative_separation * diagonal)) {
-    throw InvalidOption("separation_distance is " + std::to_string(d) +
-                        ", but must be finite and at least 1e-6 of the "
-                        "mesh's diagonal, " +
-                        std::to_string(diagonal) + "; give it in the unit of the mesh");
-  }
+  check_separations(mesh, options);
   if (!(options.abrupt_turn_angle > 0 && options.abrupt_turn_angle <= std::numbers::pi)) {
     throw InvalidOption("abrupt_turn_angle is " + std::to_string(options.abrupt_turn_angle) +
                         ", but must be in (0, pi] radians; pi disables the criterion");
@@ -73,26 +90,25 @@ struct Tracing {
   const TracingOptions& options;
   const std::vector<detail::TriangleCrossings>& crossings;
   const Occupancy* occupancy;
+  double separation;  // at the seed
 };
 
 /// Traces one way from the last point of the streamline and appends to it; `direction` is the sign of its arc length.
 StopReason trace_one_way(const Tracing& tracing, Entry entry, double direction, Workspace& workspace) {
   auto& line = workspace.streamline;
-  const double separation = tracing.options.separation_distance;
   double chord = detail::chord_coordinate(tracing.crossings[entry.triangle], entry.role, line.points.back().position);
+  detail::Vector previous = detail::position(tracing.mesh, line.points.back());
   double length = 0;
   for (std::int64_t step = 0; step < tracing.options.max_steps; ++step) {
     const auto& crossings = tracing.crossings[entry.triangle];
-    const Role role = entry.role != detail::low_high ? detail::low_high
-                      : chord < crossings.split      ? detail::low_middle
-                                                     : detail::middle_high;
+    const Role role = detail::exit_role(crossings, entry.role, chord);
     const auto& exit = crossings.exits[role];
     const EdgePoint point{exit.edge, detail::edge_position(crossings, role, chord)};
-    if (tracing.occupancy && !tracing.occupancy->admits(entry.triangle, point)) return StopReason::near_other;
-    const double piece = detail::chord_length(crossings, chord);
+    if (tracing.occupancy && !tracing.occupancy->admits(entry.triangle, chord, point)) return StopReason::near_other;
     const auto place = detail::position(tracing.mesh, point);
+    const double piece = (place - previous).norm();
     if (workspace.points.is_near(place, direction * (length + piece)) ||
-        workspace.chords.revisit(entry.triangle, chord, crossings.width, separation)) {
+        workspace.chords.revisit(entry.triangle, chord, crossings.width, tracing.separation)) {
       return StopReason::near_itself;
     }
     length += piece;
@@ -100,16 +116,12 @@ StopReason trace_one_way(const Tracing& tracing, Entry entry, double direction, 
     line.points.push_back(point);
     line.triangles.push_back(entry.triangle);
     line.length += piece;
+    previous = place;
     if (exit.triangle < 0) return exit.stop_reason;
     entry = {exit.triangle, exit.role};
     chord = detail::chord_coordinate(tracing.crossings[entry.triangle], entry.role, point.position);
   }
   return StopReason::max_steps;
-}
-
-Role role_with_edge(const detail::TriangleCrossings& crossings, std::int32_t edge) {
-  if (crossings.exits[detail::low_high].edge == edge) return detail::low_high;
-  return crossings.exits[detail::low_middle].edge == edge ? detail::low_middle : detail::middle_high;
 }
 
 }  // namespace
@@ -134,25 +146,36 @@ std::optional<std::int32_t> StreamlineTracer::start_triangle(std::int32_t edge) 
   return std::nullopt;
 }
 
-const Streamline& StreamlineTracer::trace(const EdgePoint& seed, const Occupancy* occupancy,
-                                          Workspace& workspace) const {
+bool StreamlineTracer::has_direction(std::int32_t triangle) const {
+  return precomputed_->field.has_direction(triangle);
+}
+
+double StreamlineTracer::separation_distance(std::int32_t triangle) const {
+  const auto& options = precomputed_->options;
+  return options.separation_distances.empty() ? options.separation_distance : options.separation_distances[triangle];
+}
+
+const std::vector<detail::TriangleCrossings>& StreamlineTracer::crossings() const {
+  return precomputed_->crossings;
+}
+
+const Streamline& StreamlineTracer::trace(const Seed& seed, const Occupancy* occupancy, Workspace& workspace) const {
   const auto& [mesh, field, options, crossings] = *precomputed_;
-  const auto start = start_triangle(seed.edge);
-  if (!start) {
-    throw InvalidField("edge " + std::to_string(seed.edge) + " has no triangle with a direction; seed elsewhere");
+  if (!field.has_direction(seed.triangle)) {
+    throw InvalidField("triangle " + std::to_string(seed.triangle) + " has no direction; seed elsewhere");
   }
   auto& line = workspace.streamline;
-  line.points.assign(1, {seed.edge, detail::clamp_position(seed.position)});
+  line.points.assign(1, {seed.point.edge, detail::clamp_position(seed.point.position)});
   line.triangles.clear();
   line.length = 0;
   const auto seed_place = detail::position(mesh, line.points[0]);
-  workspace.points.start(options.separation_distance, seed_place);
+  workspace.points.start(separation_distance(seed.triangle), seed_place);
   workspace.points.add(seed_place, 0);
   workspace.chords.start(crossings.size());
 
-  const Tracing tracing{mesh, options, crossings, occupancy};
-  const Entry ahead{*start, role_with_edge(crossings[*start], seed.edge)};
-  const auto& behind = crossings[*start].exits[ahead.role];
+  const Tracing tracing{mesh, options, crossings, occupancy, separation_distance(seed.triangle)};
+  const Entry ahead{seed.triangle, detail::role_with_edge(crossings[seed.triangle], seed.point.edge)};
+  const auto& behind = crossings[seed.triangle].exits[ahead.role];
   line.stop_reasons[0] = behind.stop_reason;
   if (behind.triangle >= 0) {
     line.stop_reasons[0] = trace_one_way(tracing, {behind.triangle, behind.role}, -1, workspace);
@@ -163,6 +186,15 @@ const Streamline& StreamlineTracer::trace(const EdgePoint& seed, const Occupancy
   line.seed_index = static_cast<std::int64_t>(line.triangles.size());
   line.stop_reasons[1] = trace_one_way(tracing, ahead, 1, workspace);
   return line;
+}
+
+const Streamline& StreamlineTracer::trace(const EdgePoint& seed, const Occupancy* occupancy,
+                                          Workspace& workspace) const {
+  const auto triangle = start_triangle(seed.edge);
+  if (!triangle) {
+    throw InvalidField("edge " + std::to_string(seed.edge) + " has no triangle with a direction; seed elsewhere");
+  }
+  return trace(Seed{seed, *triangle}, occupancy, workspace);
 }
 
 std::unique_ptr<StreamlineTracer::Workspace, StreamlineTracer::WorkspaceDeleter> StreamlineTracer::make_workspace() {

@@ -86,6 +86,11 @@ class PlacementMethod(Enum):
     random = 0
     neighborhood = 1
     distance = 2
+    longest = 3
+
+class OccupancyModel(Enum):
+    exact = 0
+    edge_mask = 1
 
 class PlacementEnd(Enum):
     complete = 0
@@ -114,8 +119,12 @@ class PlacementStatistics:
 class PlacementOptions:
     separation_distance: float
     method: PlacementMethod
+    occupancy: OccupancyModel
     seed_count: int
     seed_distance_factor: float
+    seed_clearance: float
+    test_distance: float
+    minimum_length: float
     abrupt_turn_angle: float
     max_steps: int
     random_seed: int
@@ -157,9 +166,14 @@ def place_streamlines(
     field: OrientationField,
     *,
     separation_distance: float = ...,
+    separation_distances: _Floats = ...,
     method: PlacementMethod = ...,
+    occupancy: OccupancyModel = ...,
     seed_count: int = ...,
     seed_distance_factor: float = ...,
+    seed_clearance: float = ...,
+    test_distance: float = ...,
+    minimum_length: float = ...,
     abrupt_turn_angle: float = ...,
     max_steps: int = ...,
     random_seed: int = ...,

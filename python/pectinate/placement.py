@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from enum import Enum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from pectinate import _core
 from pectinate.errors import InvalidField, InvalidOption
@@ -22,18 +23,23 @@ if TYPE_CHECKING:
 _OPTION_NAMES = (
     "separation_distance",
     "method",
+    "occupancy",
     "seed_count",
     "seed_distance_factor",
+    "seed_clearance",
+    "test_distance",
+    "minimum_length",
     "abrupt_turn_angle",
     "max_steps",
     "random_seed",
     "thread_count",
 )
+_ENUMERATIONS: dict[str, type[Enum]] = {"method": _core.PlacementMethod, "occupancy": _core.OccupancyModel}
 
 
 def _plain_options(options: _core.PlacementOptions) -> dict[str, Any]:
     values = {name: getattr(options, name) for name in _OPTION_NAMES}
-    return values | {"method": options.method.name}
+    return values | {name: values[name].name for name in _ENUMERATIONS}
 
 
 #: The options of `place_streamlines` and their defaults, as the engine has them.
@@ -45,8 +51,9 @@ def place_streamlines(
 ) -> Placement:
     """Fill a surface with evenly spaced streamlines of its orientation field (paper sections 2.4 to 2.7).
 
-    Streamlines are placed one by one, each the longest of `seed_count` candidates, until nothing is free. The same
-    arguments give the same bytes, whatever `thread_count`.
+    Streamlines are placed one by one until nothing is free. With exact occupancy whole streamlines are at least the
+    separation distance apart, and no point is much farther than that from one. The same arguments give the same bytes,
+    whatever `thread_count`.
 
     Parameters
     ----------
@@ -54,15 +61,27 @@ def place_streamlines(
         A `Model`, or anything that `pectinate.load` takes.
     progress
         Called now and then with the coverage in [0, 1]; returning False ends the placement with what is there.
-    separation_distance : float
-        d_sep, mm: streamlines come no closer.
+    separation_distance : float or array
+        d_sep, mm: streamlines come no closer. An array, (T,) or (V,) per triangle or vertex of the source, asks for
+        that distance from streamlines that lie there.
     method : str
-        Where candidates start: "random" (anywhere free), "neighborhood" (just beside placed streamlines) or
-        "distance" (at `seed_distance_factor` d_sep from them).
+        "longest": always the longest streamline that still fits. The paper's methods keep the longest of `seed_count`
+        candidates, which start at random: "random" anywhere free, "neighborhood" just beside placed streamlines,
+        "distance" at `seed_distance_factor` d_sep from them.
+    occupancy : str
+        "exact", or "edge_mask", the paper's: exact where streamlines cross edges only. Not for method "longest".
     seed_count : int
-        Candidates a step, at least 1.
+        Candidates a step of the paper's methods, at least 1.
     seed_distance_factor : float
-        c_seed, at least 1.
+        c_seed of method "distance", at least 1.
+    seed_clearance : float
+        In [1, 2]: streamlines start only where this many d_sep are free. Above 1 (1.11 is good) they are fewer and
+        longer, still d_sep apart, and leave small gaps.
+    test_distance : float
+        In (0, 1]: streamlines run on until they are this many d_sep from others. Below 1 they are longer, but only
+        this far apart.
+    minimum_length : float
+        mm; shorter streamlines are not placed.
     abrupt_turn_angle : float
         Radians in (0, pi]: a streamline ends where the field turns by more from one triangle to the next; pi disables
         this.
@@ -89,17 +108,35 @@ def place_streamlines(
     model = load(surface)
     if model.field is None:
         raise InvalidField(f"{model.data.source} has no orientation field; give one with load(..., field=...)")
-    if "method" in options:
-        options["method"] = _method(options["method"])
+    for name in _ENUMERATIONS.keys() & options.keys():
+        options[name] = _member(name, options[name])
+    separations = options.get("separation_distance")
+    if np.ndim(separations) > 0:
+        options["separation_distances"] = _per_mesh_triangle(model, options.pop("separation_distance"))
     return Placement(model, _core.place_streamlines(model.mesh, model.field, progress=progress, **options))
 
 
-def _method(name: Any) -> _core.PlacementMethod:
+def _member(name: str, value: Any) -> Enum:
     try:
-        return _core.PlacementMethod[name]
+        return _ENUMERATIONS[name][value]
     except KeyError:
-        names = ", ".join(method.name for method in _core.PlacementMethod)
-        raise InvalidOption(f"method is {name!r}, but must be one of {names}") from None
+        names = ", ".join(_ENUMERATIONS[name].__members__)
+        raise InvalidOption(f"{name} is {value!r}, but must be one of {names}") from None
+
+
+def _per_mesh_triangle(model: Model, values: ArrayLike) -> NDArray[np.float64]:
+    """Take values per triangle or vertex of the source to the triangles of the mesh; vertex values are averaged."""
+    array = np.asarray(values, float)
+    triangles, vertices = model.mesh.input_triangle_count, model.mesh.input_vertex_count
+    if array.shape == (triangles,):
+        return array[model.mesh.input_triangle]
+    if array.shape == (vertices,):
+        corners: NDArray[np.float64] = array[model.mesh.input_vertex][model.mesh.triangles]
+        return corners.mean(axis=1)
+    raise InvalidOption(
+        f"separation_distance has the shape {array.shape}, but must be one number, or one per triangle ({triangles},) "
+        f"or vertex ({vertices},) of the source"
+    )
 
 
 class Placement:

@@ -11,11 +11,11 @@ namespace pectinate {
 
 class Random;
 
-/// Where a seed point may be drawn.
+/// Where a seed may be drawn.
 enum class SeedRegion : std::uint8_t {
   free,         ///< anywhere that is not occupied
-  partly_free,  ///< the free part of partly occupied edges: within an edge length of the occupied region
-  wholly_free,  ///< edges without any occupied part
+  partly_free,  ///< the free part of partly occupied elements (edges or triangles): beside the occupied region
+  wholly_free,  ///< elements without any occupied part
 };
 
 /// What part of the surface lies within d_sep of the streamlines added so far. Grows only.
@@ -23,23 +23,34 @@ class Occupancy {
  public:
   virtual ~Occupancy() = default;
 
-  /// May a streamline go on to this point, crossing `triangle` to reach it?
-  virtual bool admits(std::int32_t triangle, const EdgePoint& point) const = 0;
+  /// May a streamline cross `triangle` by the chord with this coordinate, which leaves at `exit`?
+  virtual bool admits(std::int32_t triangle, double chord, const EdgePoint& exit) const = 0;
 
-  /// Marks everything within d_sep of the streamline that is joined to it on the surface within that distance (plus
-  /// one edge length, so that a jagged border does not part what lies side by side).
+  /// Marks everything within d_sep of the streamline that is joined to it on the surface within that distance.
   virtual void add(const Streamline& streamline) = 0;
 
-  /// Withdraws the neighbourhood of a useless seed point from the drawing; streamlines may still cross it.
-  virtual void retire_seed(const EdgePoint& seed) = 0;
-  /// Can this point still be a seed?
-  virtual bool admits_seed(const EdgePoint& seed) const = 0;
-  /// A point drawn uniformly by length from a region, none if the region is empty.
-  virtual std::optional<EdgePoint> draw_seed(SeedRegion region, Random& random) const = 0;
+  /// Withdraws the neighbourhood of a useless seed from the drawing; streamlines may still cross it.
+  virtual void retire_seed(const Seed& seed) = 0;
+  /// Can a streamline still start here?
+  virtual bool admits_seed(const Seed& seed) const = 0;
+  /// A seed drawn uniformly from a region, none if the region is empty.
+  virtual std::optional<Seed> draw_seed(SeedRegion region, Random& random) const = 0;
 
-  /// Share in [0, 1] of what can be occupied that is occupied; withdrawn seed points do not count as occupied.
+  /// Share in [0, 1] of what can be occupied that is occupied; withdrawn seeds do not count as occupied.
   virtual double coverage() const = 0;
 };
+
+/// How near streamlines may come to placed ones, in separation distances.
+struct Clearance {
+  double stop = 1;  ///< a streamline runs on until it is this close
+  double seed = 1;  ///< it starts only where nothing is this close; at least `stop`
+};
+
+/// Exact occupancy: for every triangle the chords that come within d_sep of a streamline, as intervals in closed form.
+/// The separation of whole segments is exact anywhere on the surface, for any ratio of d_sep to edge length. Distance
+/// is Euclidean, to whatever is joined on the surface through triangles that near.
+std::unique_ptr<Occupancy> make_exact_occupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer,
+                                                const Clearance& clearance = {});
 
 /// The paper's occupancy (section 2.5): 64 bits an edge, one per sub-segment, set when any part of it comes within
 /// d_sep of a streamline. Exact at the edge points, to 1/64 of an edge on the safe side; inside the triangles it is

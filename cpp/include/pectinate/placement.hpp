@@ -12,25 +12,43 @@
 
 namespace pectinate {
 
-/// Where the candidates' seed points are drawn (paper section 2.7). Where a method has no admissible point, wholly
-/// free edges serve, and in the end anything free.
+/// In which order streamlines are placed. The paper's methods (section 2.7) keep the longest of `seed_count` candidates
+/// whose seeds are drawn at random; where a method has no admissible seed, wholly free elements serve, and in the end
+/// anything free.
 enum class PlacementMethod : std::uint8_t {
-  random,        ///< anywhere outside the occupied region
-  neighborhood,  ///< on partly occupied edges: between d_sep and d_sep plus an edge length from a streamline
-  distance,      ///< at `seed_distance_factor` d_sep from a placed streamline
+  random,        ///< seeds anywhere outside the occupied region
+  neighborhood,  ///< seeds beside the occupied region: between d_sep and d_sep plus an edge length from a streamline
+  distance,      ///< seeds at `seed_distance_factor` d_sep from a placed streamline
+  longest,       ///< always the longest that still fits, among all; needs exact occupancy, draws nothing at random
+};
+
+/// How it is known what is within d_sep of a streamline.
+enum class OccupancyModel : std::uint8_t {
+  exact,      ///< whole segments, anywhere on the surface
+  edge_mask,  ///< the paper's 64 bits an edge (section 2.5): exact at edge points only
 };
 
 /// Why the placement ended.
 enum class PlacementEnd : std::uint8_t {
-  complete,   ///< nothing is free
+  complete,   ///< no segment fits any more
   cancelled,  ///< the progress callback said stop; what is there is valid, coverage is not complete
 };
 
 struct PlacementOptions {
   double separation_distance = 1.6;  ///< d_sep, unit of the mesh, > 0
-  PlacementMethod method = PlacementMethod::distance;
-  int seed_count = 32;                ///< n_seeds, candidates a step, >= 1; the longest is kept
+  /// d_sep per mesh triangle, of the placed streamline there; replaces `separation_distance` where it is not empty.
+  std::vector<double> separation_distances{};
+  PlacementMethod method = PlacementMethod::longest;
+  OccupancyModel occupancy = OccupancyModel::exact;
+  int seed_count = 32;                ///< n_seeds of the paper's methods, candidates a step, in [1, 10^6]
   double seed_distance_factor = 1.3;  ///< c_seed, >= 1, of method `distance`
+  /// Streamlines start only where this many d_sep are free, >= 1: above 1 (1.11 is good) fewer and longer ones, still
+  /// d_sep apart, leave small gaps. Exact occupancy only.
+  double seed_clearance = 1;
+  /// Streamlines run on until they are this many d_sep from others, in (0, 1]: below 1 they grow longer, but only this
+  /// far apart (d_test of Jobard and Lefer 1997). Exact occupancy only.
+  double test_distance = 1;
+  double minimum_length = 0;  ///< shorter streamlines are not placed, unit of the mesh, >= 0
   double abrupt_turn_angle = TracingOptions{}.abrupt_turn_angle;  ///< radians, in (0, pi]; pi disables criterion 4
   std::int64_t max_steps = TracingOptions{}.max_steps;            ///< triangles crossed each way, >= 1
   std::uint64_t random_seed = 20190101;                           ///< the same seed gives the same bytes
@@ -49,14 +67,15 @@ struct Placement {
   std::vector<Vec3> barycentric;                ///< per point: weights of that triangle's corners, sum 1
   std::vector<double> lengths;
   std::vector<std::array<StopReason, 2>> stop_reasons;  ///< at the first and the last point
-  std::vector<std::int64_t> seed_points;                ///< per streamline: the index in `points` of its seed
+  std::vector<std::int64_t> seed_points;                ///< per streamline: index in `points` of its seed, or middle
   PlacementStatistics statistics;
   PlacementOptions options;  ///< as used, `progress` left out
   PlacementEnd end = PlacementEnd::complete;
 };
 
-/// Fills the surface with streamlines no closer than d_sep, one by one, each the longest of `seed_count` candidates,
-/// until nothing is free (paper sections 2.4 to 2.7). Ends always: each step takes a free sub-segment of an edge.
+/// Fills the surface with streamlines no closer than d_sep, one by one, until nothing is free (paper sections 2.4 to
+/// 2.7). With exact occupancy and `test_distance` 1, whole streamlines are at least d_sep apart, and parts of one that
+/// are more than 2 d_sep apart along it too (points only for the paper's methods). Ends always.
 ///
 /// The same arguments give the same bytes, whatever `thread_count`. Throws InvalidOption, InvalidField.
 Placement place_streamlines(const SurfaceMesh& mesh, const OrientationField& field, const PlacementOptions& options);

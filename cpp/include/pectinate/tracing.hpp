@@ -14,11 +14,20 @@
 namespace pectinate {
 
 class Occupancy;
+namespace detail {
+struct TriangleCrossings;
+}
 
 /// A point on an edge: `position` in (0, 1) from the edge's first end vertex to its second (paper section 2.4).
 struct EdgePoint {
   std::int32_t edge;
   double position;
+};
+
+/// Where a streamline may start: on an edge, and into which of its triangles first.
+struct Seed {
+  EdgePoint point;
+  std::int32_t triangle;
 };
 
 /// Why a streamline ends (paper section 2.6, criteria 1 to 5, and where the field ends).
@@ -33,7 +42,9 @@ enum class StopReason : std::uint8_t {
 inline constexpr int stop_reason_count = 6;
 
 struct TracingOptions {
-  double separation_distance;                       ///< d_sep, unit of the mesh, > 0
+  double separation_distance;  ///< d_sep, unit of the mesh, > 0
+  /// d_sep per mesh triangle; replaces `separation_distance` where it is not empty.
+  std::vector<double> separation_distances{};
   double abrupt_turn_angle = std::numbers::pi / 2;  ///< radians, in (0, pi]; pi disables criterion 4
   std::int64_t max_steps = 65536;  ///< triangles crossed in each direction, >= 1 (the paper's buffer held 1024)
 };
@@ -50,7 +61,7 @@ struct Streamline {
 /// Traces streamlines of one field on one mesh from edge to edge with precomputed crossings (paper section 2.4).
 ///
 /// In a triangle the field is constant, so a streamline crosses it in one straight chord, known by one coordinate
-/// across the field. An orientation closer than 1e-7 radians to a side is turned away from it by as much, and a
+/// across the field. An orientation closer than 1e-9 radians to a side is turned away from it by as much, and a
 /// crossing closer than 1e-9 of an edge to its end is moved there: no other approximation is made.
 /// Const functions may be called from several threads. Mesh and field must outlive the tracer.
 class StreamlineTracer {
@@ -71,10 +82,19 @@ class StreamlineTracer {
   /// The streamline through `seed`, both ways, until a criterion stops it; without `occupancy`, criterion 3 is off.
   /// It may have no segment. The result lives in the workspace until its next use. Throws InvalidField where no
   /// streamline can start.
+  const Streamline& trace(const Seed& seed, const Occupancy* occupancy, Workspace& workspace) const;
+  /// The same from `start_triangle` of the edge.
   const Streamline& trace(const EdgePoint& seed, const Occupancy* occupancy, Workspace& workspace) const;
 
-  /// The triangle that a streamline from a seed on this edge enters first; none if no triangle there has a direction.
+  /// A triangle that a streamline from this edge can enter; none if no triangle there has a direction.
   std::optional<std::int32_t> start_triangle(std::int32_t edge) const;
+
+  bool has_direction(std::int32_t triangle) const;
+  /// d_sep in a triangle.
+  double separation_distance(std::int32_t triangle) const;
+
+  /// Per triangle; for the library's own use.
+  const std::vector<detail::TriangleCrossings>& crossings() const;
 
  private:
   struct Precomputed;

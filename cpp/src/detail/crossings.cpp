@@ -13,83 +13,86 @@ namespace pectinate::detail {
 namespace {
 
 /// An orientation this close to a side, in radians, is turned away from it: the infinitesimal change of section 2.4.
-constexpr double least_angle_to_side = 1e-7;
+constexpr double least_angle_to_side = 1e-9;
 /// Below this an angle has no sign: parallel orientations turn the same way on a rotated mesh.
 constexpr double rounding = 1e-12;
 /// Keeps chords apart from sides in triangles so thin that no orientation is away from all of them.
 constexpr double least_split = 1e-12;
 
-Vector corner(const SurfaceMesh& mesh, std::int32_t t, int k) {
-  return vector(mesh.vertices()[mesh.triangles()[t][k % 3]]);
-}
+/// What a triangle's orientation is to its sides, each taken as running round the triangle.
+struct Sides {
+  /// Of the angle, in (0, pi), from the edge of each side to the orientation, taken as running into the triangle.
+  std::array<double, 3> cosine, sine;
+  std::int8_t middle;  ///< the corner that lies between the others, seen along the orientation
+};
 
 /// The triangle's orientation, turned in its plane where it is parallel to a side.
-Vector safe_direction(const SurfaceMesh& mesh, std::int32_t t, const Vector& direction) {
-  const Vector normal = vector(mesh.triangle_normals()[t]);
-  for (int k = 0; k < 3; ++k) {
-    const Vector side = (corner(mesh, t, k + 1) - corner(mesh, t, k)).normalized();
-    const double sine = side.cross(direction).dot(normal);
-    if (std::abs(sine) >= least_angle_to_side) continue;
-    const double angle = sine * side.dot(direction);
+Vector safe_direction(const std::array<Vector, 3>& sides, const Vector& normal, const Vector& direction) {
+  for (const auto& side : sides) {
+    const double sine = side.cross(direction).dot(normal), length = side.norm();
+    if (std::abs(sine) >= least_angle_to_side * length) continue;
+    const double angle = sine * side.dot(direction) / (length * length);
     const double turn = (angle < -rounding ? -least_angle_to_side : least_angle_to_side) - angle;
     return (direction + turn * normal.cross(direction)).normalized();
   }
   return direction;
 }
 
-/// The corner between the others, seen along the direction.
-int middle_corner(const std::array<double, 3>& across) {
-  for (int k = 0; k < 2; ++k) {
-    const double one = across[(k + 1) % 3] - across[k], other = across[(k + 2) % 3] - across[k];
-    if ((one <= 0 && other >= 0) || (one >= 0 && other <= 0)) return k;
+/// The corner between the others across the orientation: there the two sides beside it turn the same way.
+std::int8_t corner_between(const std::array<double, 3>& rise) {
+  for (std::int8_t k = 0; k < 2; ++k) {
+    if ((rise[(k + 2) % 3] <= 0) == (rise[k] <= 0)) return k;
   }
   return 2;
 }
 
-/// Angle in [0, pi] between an edge, from its first end to its second, and the orientation in one of its triangles,
-/// taken as running from the edge into the triangle.
-double angle_from_edge(const SurfaceMesh& mesh, const Vector& direction, std::int32_t t, int side) {
-  const auto [a, b] = mesh.edges()[mesh.triangle_edges()[t][side]];
-  const Vector edge = (vector(mesh.vertices()[b]) - vector(mesh.vertices()[a])).normalized();
-  const Vector to_apex = corner(mesh, t, side + 2) - corner(mesh, t, side);
-  const Vector inward = (to_apex - to_apex.dot(edge) * edge).normalized();
-  const double sine = direction.dot(inward), cosine = direction.dot(edge);
-  return sine < 0 ? std::atan2(-sine, -cosine) : std::atan2(sine, cosine);
-}
+/// Measures the chords of one triangle; fills all but the exits.
+Sides measure_chords(const SurfaceMesh& mesh, std::int32_t t, const Vector& direction, TriangleCrossings& crossings) {
+  const auto& corners = mesh.triangles()[t];
+  const auto at = [&](int k) { return vector(mesh.vertices()[corners[k % 3]]); };
+  const Vector normal = vector(mesh.triangle_normals()[t]);
+  const std::array<Vector, 3> sides = {at(1) - at(0), at(2) - at(1), at(0) - at(2)};
+  const Vector along = safe_direction(sides, normal, direction);
+  const Vector across = normal.cross(along);
+  const std::array<double, 3> rise = {sides[0].dot(across), sides[1].dot(across), sides[2].dot(across)};
 
-struct Orientations {
-  const SurfaceMesh& mesh;
-  const OrientationField& field;
-  std::vector<Vector> directions;  // safe ones
-  std::vector<std::int8_t> middle;
-};
-
-TriangleCrossings measure_chords(const SurfaceMesh& mesh, std::int32_t t, const Vector& direction, int middle) {
-  const Vector low = corner(mesh, t, middle + 1), high = corner(mesh, t, middle + 2), mid = corner(mesh, t, middle);
-  const Vector across = vector(mesh.triangle_normals()[t]).cross(direction);
-  const double width = (high - low).dot(across);
-  const double split = std::clamp((mid - low).dot(across) / width, least_split, 1 - least_split);
-  return {split, (low + split * (high - low) - mid).norm(), std::abs(width), {}};
+  Sides result{};
+  result.middle = corner_between(rise);
+  for (int k = 0; k < 3; ++k) {
+    const double length = mesh.edge_lengths()[mesh.triangle_edges()[t][k]];
+    // Inside is to the left of a side; the orientation runs there if the side falls across it.
+    const double sign = (rise[k] < 0) == mesh.runs_along(t, k) ? 1 : -1;
+    result.sine[k] = std::abs(rise[k]) / length;
+    result.cosine[k] = sign * sides[k].dot(along) / length;
+  }
+  const int m = result.middle;
+  const Vector& to_low = sides[m];
+  const Vector& low_to_high = sides[(m + 1) % 3];
+  crossings.split = std::clamp(-rise[m] / rise[(m + 1) % 3], least_split, 1 - least_split);
+  crossings.longest_chord = (to_low + crossings.split * low_to_high).norm();
+  crossings.width = std::abs(rise[(m + 1) % 3]);
+  return result;
 }
 
 /// The exit through a side; streamlines stop at borders, abrupt turns (criterion 4) and where the field ends.
-Exit make_exit(const Orientations& all, std::int32_t t, int side, double abrupt_turn_angle) {
-  const auto across = all.mesh.neighbour(t, side);
-  const Role role = role_of(side, all.middle[t]);
+Exit make_exit(const SurfaceMesh& mesh, const OrientationField& field, const std::vector<Sides>& all, std::int32_t t,
+               int side, double least_turn_cosine) {
+  const auto across = mesh.neighbour(t, side);
+  const Role role = role_of(side, all[t].middle);
   // Chord coordinates run low to high, sides run middle-low, low-high, high-middle.
-  const bool reversed = all.mesh.runs_along(t, side) != (role == low_high);
-  Exit exit{all.mesh.triangle_edges()[t][side], -1, low_high, StopReason::boundary, reversed};
+  const bool reversed = mesh.runs_along(t, side) != (role == low_high);
+  Exit exit{mesh.triangle_edges()[t][side], -1, low_high, StopReason::boundary, reversed};
   if (across.triangle < 0) return exit;
   exit.stop_reason = StopReason::no_field;
-  if (!all.field.has_direction(across.triangle)) return exit;
-  const double here = angle_from_edge(all.mesh, all.directions[t], t, side);
-  const double there = angle_from_edge(all.mesh, all.directions[across.triangle], across.triangle, across.side);
+  if (!field.has_direction(across.triangle)) return exit;
+  const auto &here = all[t], &there = all[across.triangle];
   exit.stop_reason = StopReason::abrupt_turn;
-  // Leaving at angle `here` + pi, entering at `there` on the other side of the edge: unfolded, the difference of
-  // pi - here and there.
-  if (std::abs(std::numbers::pi - here - there) > abrupt_turn_angle) return exit;
+  // Unfolded about the edge, a straight way leaves at angle `here` and goes on at pi - here: the turn is the
+  // difference of that and `there`.
+  const double turn_cosine = here.sine[side] * there.sine[across.side] - here.cosine[side] * there.cosine[across.side];
+  if (turn_cosine < least_turn_cosine) return exit;
   exit.triangle = across.triangle;
-  exit.role = role_of(across.side, all.middle[across.triangle]);
+  exit.role = role_of(across.side, there.middle);
   return exit;
 }
 
@@ -98,24 +101,28 @@ Exit make_exit(const Orientations& all, std::int32_t t, int side, double abrupt_
 std::vector<TriangleCrossings> make_crossings(const SurfaceMesh& mesh, const OrientationField& field,
                                               double abrupt_turn_angle) {
   const auto count = static_cast<std::int32_t>(mesh.triangle_count());
-  Orientations all{mesh, field, std::vector<Vector>(count, Vector::Zero()), std::vector<std::int8_t>(count, 0)};
   std::vector<TriangleCrossings> crossings(count);
+  std::vector<Sides> sides(count);
   for (std::int32_t t = 0; t < count; ++t) {
-    if (!field.has_direction(t)) continue;
-    all.directions[t] = safe_direction(mesh, t, vector(field.directions()[t]));
-    const Vector across = vector(mesh.triangle_normals()[t]).cross(all.directions[t]);
-    const Vector origin = corner(mesh, t, 0);
-    all.middle[t] = static_cast<std::int8_t>(
-        middle_corner({0, (corner(mesh, t, 1) - origin).dot(across), (corner(mesh, t, 2) - origin).dot(across)}));
-    crossings[t] = measure_chords(mesh, t, all.directions[t], all.middle[t]);
+    if (field.has_direction(t)) sides[t] = measure_chords(mesh, t, vector(field.directions()[t]), crossings[t]);
   }
+  // pi disables the criterion, whatever the rounding.
+  const double least_turn_cosine = abrupt_turn_angle < std::numbers::pi ? std::cos(abrupt_turn_angle) : -2;
   for (std::int32_t t = 0; t < count; ++t) {
     if (!field.has_direction(t)) continue;
     for (int side = 0; side < 3; ++side) {
-      crossings[t].exits[role_of(side, all.middle[t])] = make_exit(all, t, side, abrupt_turn_angle);
+      crossings[t].exits[role_of(side, sides[t].middle)] = make_exit(mesh, field, sides, t, side, least_turn_cosine);
     }
   }
   return crossings;
+}
+
+int middle_corner(const SurfaceMesh& mesh, std::int32_t triangle, const TriangleCrossings& crossings) {
+  const auto& edges = mesh.triangle_edges()[triangle];
+  for (int side = 0; side < 2; ++side) {
+    if (edges[side] == crossings.exits[low_high].edge) return (side + 2) % 3;
+  }
+  return 1;
 }
 
 double edge_position(const TriangleCrossings& crossings, Role role, double chord) {

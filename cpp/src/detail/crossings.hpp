@@ -43,9 +43,30 @@ inline Role role_of(int side, int middle) {
   return std::array{low_middle, low_high, middle_high}[(side - middle + 3) % 3];
 }
 
+/// The corner of the triangle that is in the middle: the one that the side low-high misses.
+int middle_corner(const SurfaceMesh& mesh, std::int32_t triangle, const TriangleCrossings& crossings);
+
+/// The side that lies on an edge of the triangle.
+inline Role role_with_edge(const TriangleCrossings& crossings, std::int32_t edge) {
+  if (crossings.exits[low_high].edge == edge) return low_high;
+  return crossings.exits[low_middle].edge == edge ? low_middle : middle_high;
+}
+
+/// The side through which a chord leaves, given the one through which it enters.
+inline Role exit_role(const TriangleCrossings& crossings, Role entry, double chord) {
+  if (entry != low_high) return low_high;
+  return chord < crossings.split ? low_middle : middle_high;
+}
+
 /// The position along its edge at which a chord crosses a side, and the chord that starts at such a position.
 double edge_position(const TriangleCrossings& crossings, Role role, double chord);
 double chord_coordinate(const TriangleCrossings& crossings, Role role, double edge_position);
+
+/// The share of the triangle's area between its low corner and a chord.
+inline double area_share(const TriangleCrossings& crossings, double chord) {
+  return chord < crossings.split ? chord * chord / crossings.split
+                                 : 1 - (1 - chord) * (1 - chord) / (1 - crossings.split);
+}
 
 inline double chord_length(const TriangleCrossings& crossings, double chord) {
   return crossings.longest_chord *

@@ -9,14 +9,15 @@
 
 namespace pectinate::detail {
 
-SeedRing::SeedRing(const SurfaceMesh& mesh, double distance)
-    : search_(mesh), distance_(distance), inside_round_(mesh.edges().size(), 0) {}
+SeedRing::SeedRing(const SurfaceMesh& mesh, const StreamlineTracer& tracer, double factor)
+    : search_(mesh), tracer_(tracer), factor_(factor), inside_round_(mesh.edges().size(), 0) {}
 
 void SeedRing::add(const Streamline& streamline) {
   ++round_;
   partial_.clear();
   for (std::size_t segment = 0; segment < streamline.triangles.size(); ++segment) {
-    for (const auto& found : search_.near_segment(streamline, segment, distance_)) {
+    const double distance = factor_ * tracer_.separation_distance(streamline.triangles[segment]);
+    for (const auto& found : search_.near_segment(streamline, segment, distance)) {
       if (found.interval.low == 0 && found.interval.high == 1) {
         inside_round_[found.edge] = round_;
       } else if (inside_round_[found.edge] != round_) {
@@ -29,7 +30,10 @@ void SeedRing::add(const Streamline& streamline) {
     return a.edge != b.edge ? a.edge < b.edge : a.interval.low < b.interval.low;
   });
   const auto add_point = [&](std::int32_t edge, double position) {
-    if (position > least_position && position < 1 - least_position) points_.push_back({edge, position});
+    const auto triangle = tracer_.start_triangle(edge);
+    if (triangle && position > least_position && position < 1 - least_position) {
+      seeds_.push_back({{edge, position}, *triangle});
+    }
   };
   for (std::size_t first = 0, next = 0; first < partial_.size(); first = next) {
     const auto& [edge, start] = partial_[first];
@@ -43,12 +47,12 @@ void SeedRing::add(const Streamline& streamline) {
   }
 }
 
-std::optional<EdgePoint> SeedRing::draw(const Occupancy& occupancy, Random& random) {
-  while (!points_.empty()) {
-    const auto index = random.below(points_.size());
-    if (occupancy.admits_seed(points_[index])) return points_[index];
-    points_[index] = points_.back();
-    points_.pop_back();
+std::optional<Seed> SeedRing::draw(const Occupancy& occupancy, Random& random) {
+  while (!seeds_.empty()) {
+    const auto index = random.below(seeds_.size());
+    if (occupancy.admits_seed(seeds_[index])) return seeds_[index];
+    seeds_[index] = seeds_.back();
+    seeds_.pop_back();
   }
   return std::nullopt;
 }

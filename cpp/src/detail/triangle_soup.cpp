@@ -15,7 +15,7 @@ namespace pectinate::detail {
 namespace {
 
 /// Below this height over the longest side a triangle has no usable plane in double precision.
-constexpr double least_relative_height = 1e-10;
+constexpr double least_relative_height = 1e-8;
 
 bool is_finite(const Vec3& v) {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "detail/crossings.hpp"
+#include "detail/interval_sets.hpp"
+#include "detail/vec.hpp"
+#include "pectinate/occupancy.hpp"
+#include "pectinate/surface_mesh.hpp"
+
+namespace pectinate::detail {
+
+/// A polyline whose segment i lies in triangle i, on the chord with coordinate i.
+struct Polyline {
+  std::vector<Vector> points;
+  std::vector<std::int32_t> triangles;
+  std::vector<double> chords;
+};
+
+/// For every triangle, which of its chords come within the separation distance of a streamline: exact for whole
+/// segments, anywhere on the surface.
+///
+/// Distance is Euclidean, between whatever is joined on the surface through triangles that are near. The separation
+/// distance is that of the triangle in which the placed streamline lies. The cost of adding a streamline is that of the
+/// area that comes within reach.
+class ChordOccupancy {
+ public:
+  ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const Clearance& clearance);
+
+  /// Chords that no streamline may take, and those at which none may start (a superset).
+  const IntervalSets& stopped() const { return stopped_; }
+  const IntervalSets& unseeded() const { return has_seed_sets_ ? unseeded_ : stopped_; }
+  bool has_seed_sets() const { return has_seed_sets_; }
+
+  void add(const Polyline& line);
+
+  /// Gives up a chord as a seed, when it proved useless.
+  void retire_seed(std::int32_t triangle, const Interval& chords);
+
+  /// The triangles in which the streamline added last took seeds, in the order in which they were found, some twice.
+  const std::vector<std::int32_t>& changed() const { return changed_; }
+
+  /// The share of the area of all chords in a triangle that is still free for seeds.
+  double free_share(std::int32_t triangle) const;
+  /// The share of the surface, of its triangles with a direction, whose chords are taken.
+  double coverage() const;
+
+ private:
+  /// Keeps rounding on the safe side; in separation distances.
+  static constexpr double guard = 2e-6;
+
+  /// What is known of a triangle at a glance, in single precision, relative to `origin_`; a cache line holds two.
+  struct Tile {
+    float x, y, z;
+    float radius;  ///< about the centroid; negative at the surface's border
+    std::array<std::int32_t, 3> neighbours;
+    std::uint32_t round;  ///< in which it was reached last
+  };
+  static constexpr int lanes = 8;
+  static constexpr int most_segments = 16 * lanes;
+
+  /// The segments of a block, laid out for distances from one point to all of them.
+  struct Block {
+    alignas(64) float x[most_segments], y[most_segments], z[most_segments];
+    float dx[most_segments], dy[most_segments], dz[most_segments], inverse_square[most_segments];
+    float reach[most_segments];     ///< greatest radius of the segment's capsule
+    float distance[most_segments];  ///< from the point at hand
+    float greatest_reach = 0;
+    int count = 0;
+  };
+
+  void add_block(const Polyline& line, std::size_t first, std::size_t last);
+  void fill_block(const Polyline& line, std::size_t first, std::size_t last);
+  void measure_distances(const Tile& tile);
+  void reach(std::int32_t triangle);
+  void reach_neighbours(std::int32_t triangle);
+  void visit(std::int32_t triangle, const Polyline& line, std::size_t first);
+  /// From the point at hand to the nearest capsule, whose radii are this share of `reach`; negative inside.
+  float nearest_capsule(float share) const;
+
+  /// One of the two kinds of marks: capsules of radius `clearance`, which is this share of `reach`, marked in `sets`.
+  struct Marking {
+    float share;
+    double clearance;
+    IntervalSets& sets;
+  };
+  void mark(std::int32_t triangle, const Polyline& line, std::size_t first, double clearance, IntervalSets& sets);
+  void mark_exactly(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking);
+
+  const SurfaceMesh& mesh_;
+  const StreamlineTracer& tracer_;
+  Clearance clearance_;
+  bool has_seed_sets_;
+  IntervalSets stopped_, unseeded_;
+  Vector origin_;
+  std::vector<Tile> tiles_;
+  std::uint32_t round_ = 0;
+  std::vector<std::int32_t> queue_, changed_;
+  Block block_;
+};
+
+}  // namespace pectinate::detail

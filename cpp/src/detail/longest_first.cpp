@@ -1,0 +1,356 @@
+// SPDX-License-Identifier: MIT
+#include "detail/longest_first.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <queue>
+
+#include "detail/crossings.hpp"
+#include "detail/edge_point.hpp"
+#include "detail/self_free_run.hpp"
+#include "detail/visited_chords.hpp"
+
+namespace pectinate::detail {
+namespace {
+
+/// Prefers lines that hug a placed one to others of about the same length.
+constexpr double hugging_bonus = 1.05;
+/// Seeds of hugging lines lie this far outside the band that they hug, in separation distances.
+constexpr double hugging_gap = 1e-6;
+/// Narrower gaps between occupied chords hold no streamline.
+constexpr double least_gap = 4 * least_position;
+
+/// One chord of a trajectory; `direction` says through which side it leaves.
+struct Chord {
+  double coordinate;
+  float length;
+  std::int32_t code;  ///< 2 * triangle, + 1 if it leaves through low_high
+
+  std::int32_t triangle() const { return code >> 1; }
+  bool leaves_through_low_high() const { return code & 1; }
+};
+
+using Chords = std::vector<Chord>;
+
+/// A stretch [first, last) of the stored chords.
+struct Stretch {
+  std::int64_t first, last;
+};
+
+/// A curve of the field, from stop to stop.
+struct Trajectory {
+  Stretch stretch;
+  std::array<StopReason, 2> ends;
+  double bonus;
+};
+
+/// A stretch of a trajectory under the length that it had when it was last looked at; it only ever gets shorter.
+struct Piece {
+  double key;
+  Stretch stretch;
+  std::int32_t trajectory;
+
+  bool operator<(const Piece& other) const {
+    return key != other.key ? key < other.key : stretch.first > other.stretch.first;
+  }
+};
+
+class LongestFirst {
+ public:
+  LongestFirst(const SurfaceMesh& mesh, const StreamlineTracer& tracer, double minimum_length,
+               ChordOccupancy& occupancy, const std::function<void(const Streamline&)>& place)
+      : mesh_(mesh),
+        tracer_(tracer),
+        crossings_(tracer.crossings()),
+        minimum_length_(minimum_length),
+        occupancy_(occupancy),
+        place_(place),
+        hugged_(crossings_.size(), 0) {}
+
+  bool run(const std::function<bool()>& go_on) {
+    fill_pool();
+    do {
+      if (!empty_heap(go_on)) return false;
+    } while (push_gaps());
+    return true;
+  }
+
+ private:
+  // Tracing ---------------------------------------------------------------------------------------------------------
+
+  /// Appends the chords that follow on one, leaving through a side; stops at occupied ones if asked.
+  StopReason walk(const Chord& start, Role exit, bool mind_others, Chords& chords) {
+    auto triangle = start.triangle();
+    double coordinate = start.coordinate;
+    for (std::int64_t step = 0; step < tracer_.options().max_steps; ++step) {
+      const auto& way_out = crossings_[triangle].exits[exit];
+      if (way_out.triangle < 0) return way_out.stop_reason;
+      const double position = edge_position(crossings_[triangle], exit, coordinate);
+      triangle = way_out.triangle;
+      const auto& crossings = crossings_[triangle];
+      coordinate = chord_coordinate(crossings, way_out.role, position);
+      if (mind_others && occupancy_.stopped().contains(triangle, coordinate)) return StopReason::near_other;
+      if (visited_.revisit(triangle, coordinate, crossings.width, tracer_.separation_distance(triangle))) {
+        return StopReason::near_itself;
+      }
+      exit = exit_role(crossings, way_out.role, coordinate);
+      chords.push_back(make_chord(triangle, coordinate, exit == low_high));
+    }
+    return StopReason::max_steps;
+  }
+
+  Chord make_chord(std::int32_t triangle, double coordinate, bool leaves_through_low_high) const {
+    const auto length = static_cast<float>(chord_length(crossings_[triangle], coordinate));
+    return {coordinate, length, 2 * triangle + leaves_through_low_high};
+  }
+
+  /// Traces both ways from a chord and stores the trajectory as a candidate.
+  const Trajectory& add_trajectory(std::int32_t triangle, double coordinate, bool mind_others, double bonus) {
+    const auto& crossings = crossings_[triangle];
+    const Chord start = make_chord(triangle, coordinate, true);
+    visited_.start(crossings_.size());
+    visited_.revisit(triangle, coordinate, crossings.width, 0);
+    scratch_.clear();
+    Trajectory trajectory{{std::ssize(chords_), 0}, {}, bonus};
+    trajectory.ends[0] = walk(start, exit_role(crossings, low_high, coordinate), mind_others, scratch_);
+    // Traced away from the start: turned round, each chord leaves through the side that it was entered through.
+    for (auto chord = scratch_.rbegin(); chord != scratch_.rend(); ++chord) {
+      chords_.push_back({chord->coordinate, chord->length, chord->code ^ 1});
+    }
+    chords_.push_back(start);
+    trajectory.ends[1] = walk(start, low_high, mind_others, chords_);
+    trajectory.stretch.last = std::ssize(chords_);
+    trajectories_.push_back(trajectory);
+    push(trajectory.stretch, static_cast<std::int32_t>(trajectories_.size()) - 1);
+    return trajectories_.back();
+  }
+
+  // Candidates ------------------------------------------------------------------------------------------------------
+
+  double length(const Stretch& stretch) const {
+    double sum = 0;
+    for (auto i = stretch.first; i < stretch.last; ++i) sum += chords_[i].length;
+    return sum;
+  }
+
+  void push(const Stretch& stretch, std::int32_t trajectory) {
+    const double key = length(stretch);
+    if (stretch.first < stretch.last && key >= minimum_length_) {
+      heap_.push({key * trajectories_[trajectory].bonus, stretch, trajectory});
+    }
+  }
+
+  /// Trajectories so close that none of the longest streamlines is far from one: each triangle is crossed by one, or
+  /// a few triangles away from one.
+  void fill_pool() {
+    double edge = 0;
+    for (const double length : mesh_.edge_lengths()) edge += length;
+    edge /= static_cast<double>(mesh_.edge_lengths().size());
+    std::vector<bool> served(crossings_.size(), false);
+    std::vector<std::int32_t> front, next;
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(crossings_.size()); ++t) {
+      if (served[t] || occupancy_.stopped().is_full(t)) continue;
+      const auto stretch = add_trajectory(t, 0.5, false, 1).stretch;
+      front.clear();
+      for (auto i = stretch.first; i < stretch.last; ++i) front.push_back(chords_[i].triangle());
+      for (const auto u : front) served[u] = true;
+      const int rings = std::clamp(static_cast<int>(tracer_.separation_distance(t) / (2 * edge)), 1, 3);
+      for (int ring = 0; ring < rings; ++ring, front.swap(next)) {
+        next.clear();
+        for (const auto u : front) {
+          for (int side = 0; side < 3; ++side) {
+            const auto v = mesh_.neighbour(u, side).triangle;
+            if (v < 0 || served[v]) continue;
+            served[v] = true;
+            next.push_back(v);
+          }
+        }
+      }
+    }
+  }
+
+  /// Candidates that lie just outside the band of the streamline placed last.
+  void push_hugging() {
+    ++round_;
+    for (const auto t : occupancy_.changed()) {
+      if (hugged_[t] == round_ || occupancy_.unseeded().is_full(t)) continue;
+      hugged_[t] = round_;
+      const double gap = hugging_gap * tracer_.separation_distance(t) / crossings_[t].width;
+      for (const auto& [low, high] : occupancy_.unseeded().intervals(t)) {
+        for (const double coordinate : {low - gap, high + gap}) {
+          if (!(coordinate > least_position && coordinate < 1 - least_position)) continue;
+          if (occupancy_.unseeded().contains(t, coordinate)) continue;
+          const auto stretch = add_trajectory(t, coordinate, true, hugging_bonus).stretch;
+          for (auto i = stretch.first; i < stretch.last; ++i) hugged_[chords_[i].triangle()] = round_;
+        }
+      }
+    }
+  }
+
+  /// A candidate through every gap that is left; false if none is.
+  bool push_gaps() {
+    bool any = false;
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(crossings_.size()); ++t) {
+      for (const auto& gap : occupancy_.unseeded().gaps(t)) {
+        const bool narrow = gap.high - gap.low < least_gap;
+        if (narrow || length(add_trajectory(t, (gap.low + gap.high) / 2, true, 1).stretch) < minimum_length_) {
+          occupancy_.retire_seed(t, gap);
+        } else {
+          any = true;
+        }
+      }
+    }
+    return any;
+  }
+
+  // Placement -------------------------------------------------------------------------------------------------------
+
+  /// Places pieces, longest first, until none is left; false if it was stopped.
+  bool empty_heap(const std::function<bool()>& go_on) {
+    while (!heap_.empty()) {
+      if (!go_on()) return false;
+      const auto piece = heap_.top();
+      heap_.pop();
+      if (const auto best = longest_free(piece)) {
+        if (is_still_first(*best, piece.trajectory)) {
+          place_best(*best, piece.trajectory);
+        } else {
+          push(*best, piece.trajectory);
+        }
+      }
+    }
+    return true;
+  }
+
+  bool is_still_first(const Stretch& stretch, std::int32_t trajectory) const {
+    return heap_.empty() || length(stretch) * trajectories_[trajectory].bonus >= heap_.top().key;
+  }
+
+  /// The longest free stretch of a piece; the others go back to the heap.
+  std::optional<Stretch> longest_free(const Piece& piece) {
+    std::optional<Stretch> best;
+    double best_length = 0;
+    for (auto i = piece.stretch.first; i < piece.stretch.last;) {
+      if (is_stopped(chords_[i])) {
+        ++i;
+        continue;
+      }
+      Stretch run{i, i};
+      double run_length = 0;
+      bool can_start = false;
+      for (; run.last < piece.stretch.last && !is_stopped(chords_[run.last]); ++run.last) {
+        run_length += chords_[run.last].length;
+        can_start = can_start || !occupancy_.has_seed_sets() || !is_unseeded(chords_[run.last]);
+      }
+      i = run.last;
+      if (!can_start) continue;
+      if (best && run_length <= best_length) {
+        push(run, piece.trajectory);
+      } else {
+        if (best) push(*best, piece.trajectory);
+        best = run;
+        best_length = run_length;
+      }
+    }
+    return best;
+  }
+
+  bool is_stopped(const Chord& chord) const {
+    return occupancy_.stopped().contains(chord.triangle(), chord.coordinate);
+  }
+  bool is_unseeded(const Chord& chord) const {
+    return occupancy_.unseeded().contains(chord.triangle(), chord.coordinate);
+  }
+
+  /// Places a stretch, or, where it comes back to itself, the longest part of it that does not.
+  void place_best(const Stretch& stretch, std::int32_t trajectory) {
+    make_polyline(stretch);
+    const double separation = tracer_.separation_distance(chords_[stretch.first].triangle());
+    const auto run = longest_self_free_run(polyline_.points, separation, 2 * separation);
+    const Stretch part{stretch.first + static_cast<std::int64_t>(run.first),
+                       stretch.first + static_cast<std::int64_t>(run.last)};
+    if (part.last - part.first < stretch.last - stretch.first) {
+      push({stretch.first, part.first}, trajectory);
+      push({part.last, stretch.last}, trajectory);
+      if (!is_still_first(part, trajectory)) {
+        push(part, trajectory);
+        return;
+      }
+      make_polyline(part);
+    }
+    occupancy_.add(polyline_);
+    place_(make_streamline(part, trajectory));
+    push_hugging();
+  }
+
+  void make_polyline(const Stretch& stretch) {
+    polyline_.points.clear();
+    polyline_.triangles.clear();
+    polyline_.chords.clear();
+    for (auto i = stretch.first; i < stretch.last; ++i) {
+      if (i == stretch.first) polyline_.points.push_back(position(mesh_, entry_point(chords_[i])));
+      polyline_.points.push_back(position(mesh_, exit_point(chords_[i])));
+      polyline_.triangles.push_back(chords_[i].triangle());
+      polyline_.chords.push_back(chords_[i].coordinate);
+    }
+  }
+
+  EdgePoint point_on(const Chord& chord, Role role) const {
+    const auto& crossings = crossings_[chord.triangle()];
+    return {crossings.exits[role].edge, edge_position(crossings, role, chord.coordinate)};
+  }
+  Role short_side(const Chord& chord) const {
+    return exit_role(crossings_[chord.triangle()], low_high, chord.coordinate);
+  }
+  EdgePoint exit_point(const Chord& chord) const {
+    return point_on(chord, chord.leaves_through_low_high() ? low_high : short_side(chord));
+  }
+  EdgePoint entry_point(const Chord& chord) const {
+    return point_on(chord, chord.leaves_through_low_high() ? short_side(chord) : low_high);
+  }
+
+  Streamline make_streamline(const Stretch& stretch, std::int32_t trajectory) const {
+    Streamline line;
+    line.points.push_back(entry_point(chords_[stretch.first]));
+    for (auto i = stretch.first; i < stretch.last; ++i) {
+      line.points.push_back(exit_point(chords_[i]));
+      line.triangles.push_back(chords_[i].triangle());
+      line.length += chord_length(crossings_[chords_[i].triangle()], chords_[i].coordinate);
+    }
+    line.seed_index = std::ssize(line.points) / 2;
+    const auto& whole = trajectories_[trajectory];
+    const auto reason_at = [&](std::int64_t outside) {
+      return is_stopped(chords_[outside]) ? StopReason::near_other : StopReason::near_itself;
+    };
+    line.stop_reasons[0] = stretch.first == whole.stretch.first ? whole.ends[0] : reason_at(stretch.first - 1);
+    line.stop_reasons[1] = stretch.last == whole.stretch.last ? whole.ends[1] : reason_at(stretch.last);
+    return line;
+  }
+
+  const SurfaceMesh& mesh_;
+  const StreamlineTracer& tracer_;
+  const std::vector<TriangleCrossings>& crossings_;
+  double minimum_length_;
+  ChordOccupancy& occupancy_;
+  const std::function<void(const Streamline&)>& place_;
+
+  Chords chords_;  // of all trajectories, one after the other
+  std::vector<Trajectory> trajectories_;
+  std::priority_queue<Piece> heap_;
+
+  VisitedChords visited_;
+  Chords scratch_;
+  Polyline polyline_;                  // of the stretch at hand
+  std::vector<std::uint32_t> hugged_;  // per triangle: the last streamline beside which a candidate crosses it
+  std::uint32_t round_ = 0;
+};
+
+}  // namespace
+
+bool place_longest_first(const SurfaceMesh& mesh, const StreamlineTracer& tracer, double minimum_length,
+                         ChordOccupancy& occupancy, const std::function<void(const Streamline&)>& place,
+                         const std::function<bool()>& go_on) {
+  return LongestFirst(mesh, tracer, minimum_length, occupancy, place).run(go_on);
+}
+
+}  // namespace pectinate::detail

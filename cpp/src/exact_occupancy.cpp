@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "detail/chord_occupancy.hpp"
+#include "detail/crossings.hpp"
+#include "detail/edge_point.hpp"
+#include "detail/random.hpp"
+#include "detail/weighted_set.hpp"
+#include "pectinate/occupancy.hpp"
+
+namespace pectinate {
+namespace {
+
+/// Areas become whole numbers for exact drawing: the mean area is this much.
+constexpr double weight_of_mean_area = 65536;
+/// Half the share of a triangle that a useless seed takes with it.
+constexpr double retired_half_width = 1.0 / 128;
+
+/// The exact occupancy with seeds to draw, for the paper's placement methods.
+class ExactOccupancy final : public Occupancy {
+ public:
+  ExactOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const Clearance& clearance)
+      : mesh_(mesh),
+        tracer_(tracer),
+        occupancy_(mesh, tracer, clearance),
+        partly_free_(mesh.triangle_count()),
+        wholly_free_(mesh.triangle_count()) {
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t) update(t);
+  }
+
+  bool admits(std::int32_t triangle, double chord, const EdgePoint&) const override {
+    return !occupancy_.stopped().contains(triangle, chord);
+  }
+
+  bool admits_seed(const Seed& seed) const override {
+    return !occupancy_.unseeded().contains(seed.triangle, chord_of(seed));
+  }
+
+  void add(const Streamline& streamline) override {
+    detail::Polyline line{{}, streamline.triangles, {}};
+    for (const auto& point : streamline.points) line.points.push_back(detail::position(mesh_, point));
+    for (std::size_t i = 0; i < line.triangles.size(); ++i) {
+      line.chords.push_back(chord_of({streamline.points[i], line.triangles[i]}));
+    }
+    occupancy_.add(line);
+    for (const auto triangle : occupancy_.changed()) update(triangle);
+  }
+
+  void retire_seed(const Seed& seed) override {
+    const double chord = chord_of(seed);
+    occupancy_.retire_seed(seed.triangle, {chord - retired_half_width, chord + retired_half_width});
+    update(seed.triangle);
+  }
+
+  std::optional<Seed> draw_seed(SeedRegion region, Random& random) const override {
+    const std::uint64_t partly = region == SeedRegion::wholly_free ? 0 : partly_free_.total();
+    const std::uint64_t wholly = region == SeedRegion::partly_free ? 0 : wholly_free_.total();
+    if (partly + wholly == 0) return std::nullopt;
+    const std::uint64_t offset = random.below(partly + wholly);
+    const auto triangle =
+        static_cast<std::int32_t>(offset < partly ? partly_free_.find(offset) : wholly_free_.find(offset - partly));
+    return seed_on(triangle, draw_chord(triangle, random));
+  }
+
+  double coverage() const override { return occupancy_.coverage(); }
+
+ private:
+  double chord_of(const Seed& seed) const {
+    const auto& crossings = tracer_.crossings()[seed.triangle];
+    return detail::chord_coordinate(crossings, detail::role_with_edge(crossings, seed.point.edge), seed.point.position);
+  }
+
+  Seed seed_on(std::int32_t triangle, double chord) const {
+    const auto& crossings = tracer_.crossings()[triangle];
+    return {{crossings.exits[detail::low_high].edge, detail::edge_position(crossings, detail::low_high, chord)},
+            triangle};
+  }
+
+  double draw_chord(std::int32_t triangle, Random& random) const {
+    const auto gaps = occupancy_.unseeded().gaps(triangle);
+    double width = 0;
+    for (const auto& gap : gaps) width += gap.high - gap.low;
+    double offset = random.unit() * width;
+    for (const auto& gap : gaps) {
+      if (offset < gap.high - gap.low) return gap.low + offset;
+      offset -= gap.high - gap.low;
+    }
+    return (gaps.back().low + gaps.back().high) / 2;
+  }
+
+  void update(std::int32_t triangle) {
+    const double scale = weight_of_mean_area * static_cast<double>(mesh_.triangle_count()) / mesh_.area();
+    const double free_area = occupancy_.free_share(triangle) * mesh_.triangle_areas()[triangle];
+    const bool full = occupancy_.unseeded().is_full(triangle);
+    const auto weight = full ? 0 : std::max<std::uint64_t>(1, std::llround(free_area * scale));
+    const bool untouched = occupancy_.unseeded().is_empty(triangle);
+    partly_free_.set(triangle, untouched ? 0 : weight);
+    wholly_free_.set(triangle, untouched ? weight : 0);
+  }
+
+  const SurfaceMesh& mesh_;
+  const StreamlineTracer& tracer_;
+  detail::ChordOccupancy occupancy_;
+  detail::WeightedSet partly_free_, wholly_free_;
+};
+
+}  // namespace
+
+std::unique_ptr<Occupancy> make_exact_occupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer,
+                                                const Clearance& clearance) {
+  return std::make_unique<ExactOccupancy>(mesh, tracer, clearance);
+}
+
+}  // namespace pectinate
