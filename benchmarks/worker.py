@@ -46,6 +46,15 @@ class Run:
     peak_memory: float
 
 
+def method_options(text: str) -> dict[str, Any]:
+    """Read a placement method and other options, as in "longest, seed_clearance=1.11"."""
+    method, *others = (part.strip() for part in text.split(","))
+    options: dict[str, Any] = {"method": method}
+    for name, value in (other.split("=") for other in others):
+        options[name] = value if name == "occupancy" else float(value)
+    return options
+
+
 class Refused(Exception):
     """An engine does not take the surface."""
 
@@ -64,7 +73,7 @@ def run_pectinate(arrays: Arrays, options: dict[str, Any]) -> Run:
             placement = place_streamlines(
                 Model(mesh, field, data),
                 separation_distance=options["separation_distance"],
-                method=options["method"],
+                **method_options(options["method"]),
                 seed_count=options["seed_count"],
                 random_seed=options["random_seed"],
                 thread_count=options["threads"],

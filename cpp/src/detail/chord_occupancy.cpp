@@ -219,6 +219,7 @@ void ChordOccupancy::mark_exactly(std::int32_t triangle, const Polyline& line, s
 
 double ChordOccupancy::free_share(std::int32_t triangle) const {
   const auto& crossings = tracer_.crossings()[triangle];
+  if (unseeded().is_full(triangle)) return 0;
   double share = 0;
   for (const auto& gap : unseeded().gaps(triangle)) {
     share += area_share(crossings, gap.high) - area_share(crossings, gap.low);
@@ -232,6 +233,7 @@ double ChordOccupancy::coverage() const {
     if (!tracer_.has_direction(t)) continue;
     const double area = mesh_.triangle_areas()[t];
     all += area;
+    if (stopped_.is_full(t)) continue;
     for (const auto& gap : stopped_.gaps(t)) {
       free += area * (area_share(tracer_.crossings()[t], gap.high) - area_share(tracer_.crossings()[t], gap.low));
     }

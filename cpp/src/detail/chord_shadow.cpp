@@ -21,7 +21,7 @@ std::optional<Interval> part_within(double start, double rise, double radius) {
 ChordFrame::ChordFrame(const SurfaceMesh& mesh, std::int32_t triangle, const TriangleCrossings& crossings)
     : normal_(vector(mesh.triangle_normals()[triangle])), split_(crossings.split), width_(crossings.width) {
   const auto& corners = mesh.triangles()[triangle];
-  const int middle = middle_corner(mesh, triangle, crossings);
+  const int middle = crossings.middle;
   middle_ = vector(mesh.vertices()[corners[middle]]);
   low_ = vector(mesh.vertices()[corners[(middle + 1) % 3]]);
   high_ = vector(mesh.vertices()[corners[(middle + 2) % 3]]);

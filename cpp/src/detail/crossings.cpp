@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "detail/edge_point.hpp"
 #include "detail/vec.hpp"
@@ -19,23 +20,17 @@ constexpr double rounding = 1e-12;
 /// Keeps chords apart from sides in triangles so thin that no orientation is away from all of them.
 constexpr double least_split = 1e-12;
 
-/// What a triangle's orientation is to its sides, each taken as running round the triangle.
+/// How a triangle's orientation stands to its sides.
 struct Sides {
   /// Of the angle, in (0, pi), from the edge of each side to the orientation, taken as running into the triangle.
   std::array<double, 3> cosine, sine;
-  std::int8_t middle;  ///< the corner that lies between the others, seen along the orientation
 };
 
-/// The triangle's orientation, turned in its plane where it is parallel to a side.
-Vector safe_direction(const std::array<Vector, 3>& sides, const Vector& normal, const Vector& direction) {
-  for (const auto& side : sides) {
-    const double sine = side.cross(direction).dot(normal), length = side.norm();
-    if (std::abs(sine) >= least_angle_to_side * length) continue;
-    const double angle = sine * side.dot(direction) / (length * length);
-    const double turn = (angle < -rounding ? -least_angle_to_side : least_angle_to_side) - angle;
-    return (direction + turn * normal.cross(direction)).normalized();
-  }
-  return direction;
+/// An orientation turned in its plane away from a side that it is parallel to.
+Vector turned_away(const Vector& direction, const Vector& side, const Vector& normal) {
+  const double angle = side.cross(direction).dot(normal) * side.dot(direction) / side.squaredNorm();
+  const double turn = (angle < -rounding ? -least_angle_to_side : least_angle_to_side) - angle;
+  return (direction + turn * normal.cross(direction)).normalized();
 }
 
 /// The corner between the others across the orientation: there the two sides beside it turn the same way.
@@ -52,20 +47,29 @@ Sides measure_chords(const SurfaceMesh& mesh, std::int32_t t, const Vector& dire
   const auto at = [&](int k) { return vector(mesh.vertices()[corners[k % 3]]); };
   const Vector normal = vector(mesh.triangle_normals()[t]);
   const std::array<Vector, 3> sides = {at(1) - at(0), at(2) - at(1), at(0) - at(2)};
-  const Vector along = safe_direction(sides, normal, direction);
-  const Vector across = normal.cross(along);
-  const std::array<double, 3> rise = {sides[0].dot(across), sides[1].dot(across), sides[2].dot(across)};
+  std::array<double, 3> lengths, rise;
+  Vector along = direction, across = normal.cross(along);
+  const auto measure_rise = [&] {
+    for (int k = 0; k < 3; ++k) rise[k] = sides[k].dot(across);
+  };
+  measure_rise();
+  for (int k = 0; k < 3; ++k) {
+    lengths[k] = mesh.edge_lengths()[mesh.triangle_edges()[t][k]];
+    if (std::abs(rise[k]) >= least_angle_to_side * lengths[k]) continue;
+    along = turned_away(along, sides[k], normal);
+    across = normal.cross(along);
+    measure_rise();
+  }
 
   Sides result{};
-  result.middle = corner_between(rise);
+  crossings.middle = corner_between(rise);
   for (int k = 0; k < 3; ++k) {
-    const double length = mesh.edge_lengths()[mesh.triangle_edges()[t][k]];
     // Inside is to the left of a side; the orientation runs there if the side falls across it.
     const double sign = (rise[k] < 0) == mesh.runs_along(t, k) ? 1 : -1;
-    result.sine[k] = std::abs(rise[k]) / length;
-    result.cosine[k] = sign * sides[k].dot(along) / length;
+    result.sine[k] = std::abs(rise[k]) / lengths[k];
+    result.cosine[k] = sign * sides[k].dot(along) / lengths[k];
   }
-  const int m = result.middle;
+  const int m = crossings.middle;
   const Vector& to_low = sides[m];
   const Vector& low_to_high = sides[(m + 1) % 3];
   crossings.split = std::clamp(-rise[m] / rise[(m + 1) % 3], least_split, 1 - least_split);
@@ -74,25 +78,32 @@ Sides measure_chords(const SurfaceMesh& mesh, std::int32_t t, const Vector& dire
   return result;
 }
 
+/// All triangles, measured.
+struct Measured {
+  const SurfaceMesh& mesh;
+  const OrientationField& field;
+  std::vector<Sides> sides;
+  std::vector<TriangleCrossings> crossings;  // without exits
+};
+
 /// The exit through a side; streamlines stop at borders, abrupt turns (criterion 4) and where the field ends.
-Exit make_exit(const SurfaceMesh& mesh, const OrientationField& field, const std::vector<Sides>& all, std::int32_t t,
-               int side, double least_turn_cosine) {
-  const auto across = mesh.neighbour(t, side);
-  const Role role = role_of(side, all[t].middle);
+Exit make_exit(const Measured& all, std::int32_t t, int side, double least_turn_cosine) {
+  const auto across = all.mesh.neighbour(t, side);
+  const Role role = role_of(side, all.crossings[t].middle);
   // Chord coordinates run low to high, sides run middle-low, low-high, high-middle.
-  const bool reversed = mesh.runs_along(t, side) != (role == low_high);
-  Exit exit{mesh.triangle_edges()[t][side], -1, low_high, StopReason::boundary, reversed};
+  const bool reversed = all.mesh.runs_along(t, side) != (role == low_high);
+  Exit exit{all.mesh.triangle_edges()[t][side], -1, low_high, StopReason::boundary, reversed};
   if (across.triangle < 0) return exit;
   exit.stop_reason = StopReason::no_field;
-  if (!field.has_direction(across.triangle)) return exit;
-  const auto &here = all[t], &there = all[across.triangle];
+  if (!all.field.has_direction(across.triangle)) return exit;
+  const auto &here = all.sides[t], &there = all.sides[across.triangle];
   exit.stop_reason = StopReason::abrupt_turn;
   // Unfolded about the edge, a straight way leaves at angle `here` and goes on at pi - here: the turn is the
   // difference of that and `there`.
   const double turn_cosine = here.sine[side] * there.sine[across.side] - here.cosine[side] * there.cosine[across.side];
   if (turn_cosine < least_turn_cosine) return exit;
   exit.triangle = across.triangle;
-  exit.role = role_of(across.side, there.middle);
+  exit.role = role_of(across.side, all.crossings[across.triangle].middle);
   return exit;
 }
 
@@ -101,42 +112,20 @@ Exit make_exit(const SurfaceMesh& mesh, const OrientationField& field, const std
 std::vector<TriangleCrossings> make_crossings(const SurfaceMesh& mesh, const OrientationField& field,
                                               double abrupt_turn_angle) {
   const auto count = static_cast<std::int32_t>(mesh.triangle_count());
-  std::vector<TriangleCrossings> crossings(count);
-  std::vector<Sides> sides(count);
+  Measured all{mesh, field, std::vector<Sides>(count), std::vector<TriangleCrossings>(count)};
   for (std::int32_t t = 0; t < count; ++t) {
-    if (field.has_direction(t)) sides[t] = measure_chords(mesh, t, vector(field.directions()[t]), crossings[t]);
+    if (!field.has_direction(t)) continue;
+    all.sides[t] = measure_chords(mesh, t, vector(field.directions()[t]), all.crossings[t]);
   }
   // pi disables the criterion, whatever the rounding.
   const double least_turn_cosine = abrupt_turn_angle < std::numbers::pi ? std::cos(abrupt_turn_angle) : -2;
   for (std::int32_t t = 0; t < count; ++t) {
     if (!field.has_direction(t)) continue;
     for (int side = 0; side < 3; ++side) {
-      crossings[t].exits[role_of(side, sides[t].middle)] = make_exit(mesh, field, sides, t, side, least_turn_cosine);
+      all.crossings[t].exits[role_of(side, all.crossings[t].middle)] = make_exit(all, t, side, least_turn_cosine);
     }
   }
-  return crossings;
-}
-
-int middle_corner(const SurfaceMesh& mesh, std::int32_t triangle, const TriangleCrossings& crossings) {
-  const auto& edges = mesh.triangle_edges()[triangle];
-  for (int side = 0; side < 2; ++side) {
-    if (edges[side] == crossings.exits[low_high].edge) return (side + 2) % 3;
-  }
-  return 1;
-}
-
-double edge_position(const TriangleCrossings& crossings, Role role, double chord) {
-  double along = chord;
-  if (role == low_middle) along = chord / crossings.split;
-  if (role == middle_high) along = (chord - crossings.split) / (1 - crossings.split);
-  return clamp_position(crossings.exits[role].reversed ? 1 - along : along);
-}
-
-double chord_coordinate(const TriangleCrossings& crossings, Role role, double edge_position) {
-  const double along = crossings.exits[role].reversed ? 1 - edge_position : edge_position;
-  if (role == low_middle) return along * crossings.split;
-  if (role == middle_high) return crossings.split + along * (1 - crossings.split);
-  return along;
+  return std::move(all.crossings);
 }
 
 }  // namespace pectinate::detail

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -32,6 +33,7 @@ struct TriangleCrossings {
   double longest_chord = 0;     ///< through the middle corner
   double width = 0;             ///< across the field, from the low corner to the high one
   std::array<Exit, 3> exits{};  ///< by Role
+  std::int8_t middle = 0;       ///< the corner that the side low-high misses
 };
 
 /// Crossings of all triangles; those of triangles without a direction are meaningless.
@@ -42,9 +44,6 @@ std::vector<TriangleCrossings> make_crossings(const SurfaceMesh& mesh, const Ori
 inline Role role_of(int side, int middle) {
   return std::array{low_middle, low_high, middle_high}[(side - middle + 3) % 3];
 }
-
-/// The corner of the triangle that is in the middle: the one that the side low-high misses.
-int middle_corner(const SurfaceMesh& mesh, std::int32_t triangle, const TriangleCrossings& crossings);
 
 /// The side that lies on an edge of the triangle.
 inline Role role_with_edge(const TriangleCrossings& crossings, std::int32_t edge) {
@@ -58,9 +57,28 @@ inline Role exit_role(const TriangleCrossings& crossings, Role entry, double cho
   return chord < crossings.split ? low_middle : middle_high;
 }
 
-/// The position along its edge at which a chord crosses a side, and the chord that starts at such a position.
-double edge_position(const TriangleCrossings& crossings, Role role, double chord);
-double chord_coordinate(const TriangleCrossings& crossings, Role role, double edge_position);
+/// Crossings keep this share of the edge away from its ends: a streamline never hits a vertex.
+inline constexpr double least_position = 1e-9;
+
+inline double clamp_position(double position) {
+  return std::clamp(position, least_position, 1 - least_position);
+}
+
+/// The position along its edge at which a chord crosses a side.
+inline double edge_position(const TriangleCrossings& crossings, Role role, double chord) {
+  double along = chord;
+  if (role == low_middle) along = chord / crossings.split;
+  if (role == middle_high) along = (chord - crossings.split) / (1 - crossings.split);
+  return clamp_position(crossings.exits[role].reversed ? 1 - along : along);
+}
+
+/// The chord that crosses a side at a position along its edge.
+inline double chord_coordinate(const TriangleCrossings& crossings, Role role, double edge_position) {
+  const double along = crossings.exits[role].reversed ? 1 - edge_position : edge_position;
+  if (role == low_middle) return along * crossings.split;
+  if (role == middle_high) return crossings.split + along * (1 - crossings.split);
+  return along;
+}
 
 /// The share of the triangle's area between its low corner and a chord.
 inline double area_share(const TriangleCrossings& crossings, double chord) {

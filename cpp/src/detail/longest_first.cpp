@@ -17,6 +17,10 @@ namespace {
 constexpr double hugging_bonus = 1.05;
 /// Seeds of hugging lines lie this far outside the band that they hug, in separation distances.
 constexpr double hugging_gap = 1e-6;
+/// Rings of triangles beside a trajectory of the pool that need no other.
+constexpr int most_rings = 3;
+/// Stored chords per triangle that are usual.
+constexpr std::size_t usual_chords = 3;
 /// Narrower gaps between occupied chords hold no streamline.
 constexpr double least_gap = 4 * least_position;
 
@@ -68,6 +72,7 @@ class LongestFirst {
         hugged_(crossings_.size(), 0) {}
 
   bool run(const std::function<bool()>& go_on) {
+    chords_.reserve(usual_chords * crossings_.size());
     fill_pool();
     do {
       if (!empty_heap(go_on)) return false;
@@ -154,7 +159,7 @@ class LongestFirst {
       front.clear();
       for (auto i = stretch.first; i < stretch.last; ++i) front.push_back(chords_[i].triangle());
       for (const auto u : front) served[u] = true;
-      const int rings = std::clamp(static_cast<int>(tracer_.separation_distance(t) / (2 * edge)), 1, 3);
+      const int rings = std::clamp(static_cast<int>(tracer_.separation_distance(t) / (2 * edge)), 1, most_rings);
       for (int ring = 0; ring < rings; ++ring, front.swap(next)) {
         next.clear();
         for (const auto u : front) {

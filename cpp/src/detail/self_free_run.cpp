@@ -15,7 +15,7 @@ namespace {
 class SegmentGrid {
  public:
   SegmentGrid(const std::vector<Vector>& points, double cell_size) : points_(points), cell_size_(cell_size) {
-    for (std::size_t i = 0; i + 1 < points.size(); ++i) entries_.push_back({cell_of(i), i});
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) entries_.push_back({key(cell_of(i)), i});
     std::sort(entries_.begin(), entries_.end());
   }
 
@@ -24,19 +24,26 @@ class SegmentGrid {
   void visit_around(std::size_t segment, const Visit& visit) const {
     const auto [x, y, z] = cell_of(segment);
     for (std::int64_t i = 0; i < 9; ++i) {
-      const Cell first{x + i % 3 - 1, y + i / 3 - 1, z - 1}, last{first[0], first[1], z + 1};
+      const auto first = key({x + i % 3 - 1, y + i / 3 - 1, z - 1});
       auto entry = std::lower_bound(entries_.begin(), entries_.end(), Entry{first, 0});
-      for (; entry != entries_.end() && entry->cell <= last; ++entry) visit(entry->segment);
+      for (; entry != entries_.end() && entry->key <= first + 2; ++entry) visit(entry->segment);
     }
   }
 
  private:
   using Cell = std::array<std::int64_t, 3>;
   struct Entry {
-    Cell cell;
+    std::uint64_t key;
     std::size_t segment;
     auto operator<=>(const Entry&) const = default;
   };
+
+  /// Neighbours along z have consecutive keys. Far apart cells may share one: that costs time, nothing else.
+  static std::uint64_t key(const Cell& cell) {
+    constexpr std::uint64_t mask = (1 << 21) - 1, middle = 1 << 20;
+    const auto bits = [&](std::int64_t c) { return (static_cast<std::uint64_t>(c) + middle) & mask; };
+    return bits(cell[0]) << 42 | bits(cell[1]) << 21 | bits(cell[2]);
+  }
 
   Cell cell_of(std::size_t segment) const {
     const Vector middle = (points_[segment] + points_[segment + 1]) / 2 - points_[0];
