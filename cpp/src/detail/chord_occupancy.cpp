@@ -17,6 +17,9 @@ constexpr double block_length = 4;
 /// More than single precision loses, relative to the surface's size and to a distance.
 constexpr float size_slack = 4e-7F, distance_slack = 4e-6F;
 
+/// In place of a neighbour: a border, or more than two triangles at the edge.
+constexpr std::int32_t none = -1;
+
 using Lanes = Eigen::Array<float, 8, 1>;
 
 auto lanes_at(float* values) {
@@ -51,7 +54,8 @@ ChordOccupancy::ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& 
     bool border = false;
     for (int k = 0; k < 3; ++k) {
       square = std::max(square, (corner(k) - centroid).squaredNorm());
-      tile.neighbours[k] = mesh.neighbour(t, k).triangle;
+      const bool joins_two = mesh.edge_triangles(mesh.triangle_edges()[t][k]).size() == 2;
+      tile.neighbours[k] = joins_two ? mesh.neighbour(t, k).triangle : none;
       border |= on_border[corners[k]];
     }
     tile.x = static_cast<float>(centroid.x());
@@ -136,14 +140,14 @@ void ChordOccupancy::reach(std::int32_t triangle) {
   tile.round = round_;
   queue_.push_back(triangle);
   for (const auto next : tile.neighbours) {
-    if (next >= 0) __builtin_prefetch(&tiles_[next]);
+    if (next != none) __builtin_prefetch(&tiles_[next]);
   }
 }
 
 void ChordOccupancy::reach_neighbours(std::int32_t triangle) {
   for (int side = 0; side < 3; ++side) {
     const auto next = tiles_[triangle].neighbours[side];
-    if (next >= 0) {
+    if (next != none) {
       reach(next);
     } else {  // where the surface was cut at a non-manifold edge, it goes on for distances
       for (const auto t : mesh_.edge_triangles(mesh_.triangle_edges()[triangle][side])) reach(t);
