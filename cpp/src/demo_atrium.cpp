@@ -37,7 +37,7 @@ void check(double edge_length) {
 
 detail::CutTriangles make_triangles(const detail::ImplicitSurface& surface, double edge_length) {
   int subdivisions = 0;
-  for (double edge = edge_length; edge < shortest_remeshed_edge; edge *= 2) ++subdivisions;
+  while (std::ldexp(edge_length, subdivisions) < shortest_remeshed_edge) ++subdivisions;
   const double coarse = std::ldexp(edge_length, subdivisions);
   auto triangles = detail::remesh(detail::extract_isosurface(surface, coarse), surface, coarse);
   for (int i = 0; i < subdivisions; ++i) triangles = detail::subdivide(triangles, surface);

@@ -34,8 +34,8 @@ Vector turned_away(const Vector& direction, const Vector& side, const Vector& no
 }
 
 /// The corner between the others across the orientation: there the two sides beside it turn the same way.
-std::int8_t corner_between(const std::array<double, 3>& rise) {
-  for (std::int8_t k = 0; k < 2; ++k) {
+std::int32_t corner_between(const std::array<double, 3>& rise) {
+  for (std::int32_t k = 0; k < 2; ++k) {
     if ((rise[(k + 2) % 3] <= 0) == (rise[k] <= 0)) return k;
   }
   return 2;

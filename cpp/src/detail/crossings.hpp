@@ -33,7 +33,7 @@ struct TriangleCrossings {
   double longest_chord = 0;     ///< through the middle corner
   double width = 0;             ///< across the field, from the low corner to the high one
   std::array<Exit, 3> exits{};  ///< by Role
-  std::int8_t middle = 0;       ///< the corner that the side low-high misses
+  std::int32_t middle = 0;      ///< the corner that the side low-high misses
 };
 
 /// Crossings of all triangles; those of triangles without a direction are meaningless.
