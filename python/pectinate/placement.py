@@ -6,19 +6,17 @@ import os
 from collections.abc import Callable, Iterator
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from PIL import Image
 
 from pectinate import _core
-from pectinate.errors import InvalidField, InvalidOption
+from pectinate.errors import InvalidField, InvalidFile, InvalidOption
 from pectinate.io import load, streamlines
 from pectinate.model import Model
 from pectinate.statistics import PlacementStatistics
-
-if TYPE_CHECKING:
-    from PIL import Image
 
 _OPTION_NAMES = (
     "separation_distance",
@@ -110,8 +108,7 @@ def place_streamlines(
         raise InvalidField(f"{model.data.source} has no orientation field; give one with load(..., field=...)")
     for name in _ENUMERATIONS.keys() & options.keys():
         options[name] = _member(name, options[name])
-    separations = options.get("separation_distance")
-    if np.ndim(separations) > 0:
+    if np.ndim(options.get("separation_distance", 0.0)) > 0:
         options["separation_distances"] = _per_mesh_triangle(model, options.pop("separation_distance"))
     return Placement(model, _core.place_streamlines(model.mesh, model.field, progress=progress, **options))
 
@@ -129,10 +126,9 @@ def _per_mesh_triangle(model: Model, values: ArrayLike) -> NDArray[np.float64]:
     array = np.asarray(values, float)
     triangles, vertices = model.mesh.input_triangle_count, model.mesh.input_vertex_count
     if array.shape == (triangles,):
-        return array[model.mesh.input_triangle]
+        return np.asarray(array[model.mesh.input_triangle])
     if array.shape == (vertices,):
-        corners: NDArray[np.float64] = array[model.mesh.input_vertex][model.mesh.triangles]
-        return corners.mean(axis=1)
+        return np.asarray(array[model.mesh.input_vertex][model.mesh.triangles].mean(axis=1))
     raise InvalidOption(
         f"separation_distance has the shape {array.shape}, but must be one number, or one per triangle ({triangles},) "
         f"or vertex ({vertices},) of the source"
@@ -284,9 +280,15 @@ class Placement:
 
         Raises
         ------
+        InvalidOption
+            The suffix of the path is none of a picture, or an option is out of its range.
+        InvalidFile
+            The picture cannot be written.
         RenderingUnavailable
             There is no OpenGL; the message names the packages that bring it.
         """
+        if path is not None and Path(path).suffix.lower() not in Image.registered_extensions():
+            raise InvalidOption(f"{path}: the suffix is none of a picture; use .png, .jpg, .tif or .pdf")
         from pectinate.figure import draw_sheet  # noqa: PLC0415  (OpenGL is loaded for drawing only)
 
         tubes = self.tubes(radius=tube_radius, taper_length=taper_length, side_count=side_count)
@@ -294,5 +296,8 @@ class Placement:
             (self.mesh.vertices, self.mesh.triangles), (tubes.vertices, tubes.triangles), **sheet_options
         )
         if path is not None:
-            sheet.save(path)
+            try:
+                sheet.save(path)
+            except OSError as error:
+                raise InvalidFile.at(path, f"cannot be written ({error.strerror})", "check the folder") from error
         return sheet

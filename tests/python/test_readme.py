@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from pectinate.errors import RenderingUnavailable
 from PIL import Image
+
+from pectinate.errors import RenderingUnavailable
 
 README = Path(__file__).resolve().parents[2] / "README.md"
 

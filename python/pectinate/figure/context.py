@@ -52,10 +52,19 @@ def offscreen_context() -> Iterator[str]:
     """
     platform, close = _open()
     os.environ.setdefault(_VARIABLE, platform)
+    if platform == "osmesa":
+        _mend_pyopengl()
     try:
         yield platform
     finally:
         close()
+
+
+def _mend_pyopengl() -> None:
+    """Let PyOpenGL use OSMesa contexts as keys: before 3.1.1 it gets them as pointers, which have no hash."""
+    from OpenGL import platform  # noqa: PLC0415  (the import binds it to the platform that was just chosen)
+
+    platform.PLATFORM.GetCurrentContext.restype = c_void_p
 
 
 def _open() -> tuple[str, Close]:

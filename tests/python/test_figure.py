@@ -1,0 +1,219 @@
+"""Pictures: their scale, their orientation, what hides what, and clear errors where nothing can be drawn."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from ctypes.util import find_library
+
+import numpy as np
+import pytest
+import trimesh
+from numpy.typing import NDArray
+
+from pectinate import datasets, place_streamlines
+from pectinate.errors import InvalidFile, InvalidMesh, InvalidOption, RenderingUnavailable
+from pectinate.figure import STANDARD_VIEWS, Style, View, context, draw_sheet, principal_views, render_view
+from pectinate.figure.context import offscreen_context
+
+Arrays = tuple[NDArray[np.float64], NDArray[np.int64]]
+
+SCALE = 0.25  # mm per pixel
+SIZE = (200, 160)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _opengl() -> None:
+    try:
+        with offscreen_context():
+            pass
+    except RenderingUnavailable as error:
+        pytest.skip(str(error))
+
+
+def sphere(radius: float = 10.0, centre: tuple[float, float, float] = (0, 0, 0)) -> Arrays:
+    ball = trimesh.creation.icosphere(subdivisions=4, radius=radius)
+    return np.asarray(ball.vertices) + centre, np.asarray(ball.faces)
+
+
+def box(extents: tuple[float, float, float], centre: tuple[float, float, float] = (0, 0, 0)) -> Arrays:
+    solid = trimesh.creation.box(extents)
+    return np.asarray(solid.vertices) + centre, np.asarray(solid.faces)
+
+
+def joined(*parts: Arrays) -> Arrays:
+    starts = np.cumsum([0] + [len(vertices) for vertices, _ in parts])
+    triangles = [faces + start for (_, faces), start in zip(parts, starts, strict=False)]
+    return np.vstack([vertices for vertices, _ in parts]), np.vstack(triangles)
+
+
+def covered(picture: NDArray[np.uint8]) -> NDArray[np.bool_]:
+    return np.any(picture[:, :, :3] != 255, axis=2)
+
+
+def test_the_silhouette_of_a_sphere_has_its_area_and_its_place() -> None:
+    picture = render_view(sphere(), size=SIZE, mm_per_pixel=SCALE, transparent=True)
+    area = picture[:, :, 3].sum() / 255 * SCALE**2
+    assert area == pytest.approx(np.pi * 10**2, rel=0.01)
+    rows, columns = np.nonzero(picture[:, :, 3] > 127)
+    assert columns.mean() == pytest.approx((SIZE[0] - 1) / 2, abs=0.5)
+    assert rows.mean() == pytest.approx((SIZE[1] - 1) / 2, abs=0.5)
+
+
+def test_the_scale_is_exact() -> None:
+    inside = covered(render_view(box((20, 10, 8)), size=SIZE, mm_per_pixel=SCALE))
+    rows, columns = np.nonzero(inside)
+    assert (np.ptp(columns) + 1, np.ptp(rows) + 1) == (20 / SCALE, 8 / SCALE)
+
+
+@pytest.mark.parametrize(
+    ("view", "towards", "side"),
+    [
+        ("anterior", (1, 0, 0), "right"),  # the patient's left is on the viewer's right
+        ("posterior", (1, 0, 0), "left"),
+        ("anterior", (0, 0, 1), "top"),
+        ("left", (0, 0, 1), "top"),
+        ("superior", (1, 0, 0), "right"),
+        ("left", (0, -1, 0), "left"),
+        ("right", (0, -1, 0), "right"),
+    ],
+)
+def test_views_are_anatomical(view: str, towards: tuple[float, float, float], side: str) -> None:
+    blob = tuple(12.0 * x for x in towards)
+    inside = covered(render_view(joined(sphere(8), sphere(3, blob)), view=view, size=(200, 200), mm_per_pixel=SCALE))
+    rows, columns = np.nonzero(inside)
+    big_row, big_column = (np.median(rows), np.median(columns))
+    lean = {"right": columns.max() - big_column, "left": big_column - columns.min()}
+    lean |= {"top": big_row - rows.min(), "bottom": rows.max() - big_row}
+    assert max(lean, key=lambda name: lean[name]) == side
+
+
+def test_other_axes_turn_the_view_with_them() -> None:
+    surface = joined(sphere(8), sphere(3, (12, 0, 0)))
+    turned = np.column_stack([-surface[0][:, 0], -surface[0][:, 1], surface[0][:, 2]])
+    lps = render_view(surface, size=SIZE, mm_per_pixel=SCALE)
+    ras = render_view((turned, surface[1]), axes="RAS", size=SIZE, mm_per_pixel=SCALE)
+    assert np.mean(np.abs(lps.astype(int) - ras.astype(int)) > 8) < 0.01
+
+
+def test_back_faces_show_the_inside_colour_and_front_faces_do_not() -> None:
+    vertices, triangles = sphere()
+    style = Style(fold_darkness=0)
+    front = render_view((vertices, triangles), size=SIZE, mm_per_pixel=SCALE, style=style)
+    inside = render_view((vertices, triangles[:, ::-1]), size=SIZE, mm_per_pixel=SCALE, style=style)
+    centre = (SIZE[1] // 2, SIZE[0] // 2)
+    assert front[centre].astype(int).sum() > inside[centre].astype(int).sum() + 60
+
+
+def test_tubes_are_dark_and_hide_what_is_behind_them() -> None:
+    bar = box((10, 1, 1), (0, -11, 0))
+    plain = render_view(sphere(), size=SIZE, mm_per_pixel=SCALE)
+    anterior = render_view(sphere(), bar, size=SIZE, mm_per_pixel=SCALE)
+    posterior = render_view(sphere(), bar, view="posterior", size=SIZE, mm_per_pixel=SCALE)
+    row, column = SIZE[1] // 2, SIZE[0] // 2
+    assert anterior[row, column].max() < 90 < plain[row, column].min()
+    assert posterior[row, column].min() > 90
+
+
+def test_the_same_picture_is_the_same_bytes() -> None:
+    first = render_view(sphere(), size=SIZE)
+    assert first.tobytes() == render_view(sphere(), size=SIZE).tobytes()
+    assert first.shape == (SIZE[1], SIZE[0], 3)
+
+
+def test_a_transparent_picture_has_no_background() -> None:
+    picture = render_view(sphere(), size=SIZE, mm_per_pixel=SCALE, transparent=True)
+    assert picture.shape == (SIZE[1], SIZE[0], 4)
+    assert picture[0, 0, 3] == 0
+    assert picture[SIZE[1] // 2, SIZE[0] // 2, 3] == 255
+
+
+def test_a_sheet_holds_its_views_labels_and_bar() -> None:
+    plain = draw_sheet(sphere(), size=SIZE, labels=False, scale_bar=False)
+    assert plain.size == (3 * SIZE[0], 2 * SIZE[1])
+    labelled = draw_sheet(sphere(), size=SIZE, labels=True, scale_bar=False)
+    assert labelled.size == (3 * SIZE[0], 2 * (SIZE[1] + round(0.09 * SIZE[1])))
+    assert draw_sheet(sphere(), views="left", size=SIZE, labels=False).size == SIZE
+    four = draw_sheet(sphere(), views=STANDARD_VIEWS[:4], size=SIZE, labels=False)
+    assert four.size == (2 * SIZE[0], 2 * SIZE[1])
+    single = draw_sheet(sphere(), views="anterior", size=SIZE, labels=False, scale_bar=False)
+    assert np.array_equal(np.asarray(plain)[: SIZE[1], : SIZE[0]], np.asarray(single))
+
+
+def test_the_scale_bar_has_its_length() -> None:
+    kwargs = {"views": "anterior", "size": (400, 400), "labels": False}
+    surface = box((40, 40, 40))
+    without, with_bar = (np.asarray(draw_sheet(surface, scale_bar=bar, **kwargs)).astype(int) for bar in (False, True))
+    changed = np.any(without != with_bar, axis=2)
+    bottom_row = np.nonzero(changed.any(axis=1))[0].max()
+    pixels_per_mm = np.ptp(np.nonzero(covered(without.astype(np.uint8)).any(axis=0))[0] + 1) / 40
+    assert changed[bottom_row].sum() == pytest.approx(10 * pixels_per_mm, abs=3)
+
+
+def test_principal_views_turn_with_the_shape() -> None:
+    generator = np.random.default_rng(3)
+    points = generator.normal(size=(500, 3)) ** 3 * [5, 3, 1]
+    rotation = trimesh.transformations.random_rotation_matrix(generator.random(3))[:3, :3]
+    for view, turned in zip(principal_views(points), principal_views(points @ rotation.T), strict=True):
+        assert np.allclose(rotation @ view.direction, turned.direction)
+        assert np.allclose(rotation @ view.up, turned.up)
+
+
+def test_one_triangle_and_no_tubes_make_a_picture() -> None:
+    triangle = (np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1.0]]), np.array([[0, 1, 2]]))
+    nothing = (np.zeros((0, 3)), np.zeros((0, 3), int))
+    assert covered(render_view(triangle, nothing, size=SIZE)).any()
+
+
+def test_what_cannot_be_drawn_is_refused() -> None:
+    vertices, triangles = sphere()
+    broken = vertices.copy()
+    broken[triangles[0, 0]] = np.nan
+    with pytest.raises(InvalidMesh):
+        render_view((vertices, triangles[:0]))
+    with pytest.raises(InvalidMesh, match="finite"):
+        render_view((broken, triangles))
+    with pytest.raises(InvalidMesh):
+        render_view((vertices, triangles + len(vertices)))
+    with pytest.raises(InvalidOption, match="anterior"):
+        render_view(sphere(), view="front")
+    with pytest.raises(InvalidOption, match="LPS"):
+        render_view(sphere(), axes="XYZ")
+    with pytest.raises(InvalidOption):
+        render_view(sphere(), size=(0, 10))
+    with pytest.raises(InvalidOption):
+        draw_sheet(sphere(), views=[])
+    with pytest.raises(InvalidOption):
+        draw_sheet(sphere(), columns=0)
+    with pytest.raises(InvalidOption):
+        View("none", (0, 0, 0), (0, 0, 1))
+
+
+def test_without_opengl_the_error_names_the_packages(monkeypatch: pytest.MonkeyPatch) -> None:
+    def nothing(soname: str, name: str) -> None:
+        raise OSError(f"{soname} ({name}) is not here")
+
+    monkeypatch.setattr(context, "_load", nothing)
+    monkeypatch.setattr(context, "_candidates", lambda: ("egl", "osmesa"))
+    with pytest.raises(RenderingUnavailable, match=r"apt-get install .*libegl1"), offscreen_context():
+        pass
+
+
+@pytest.mark.skipif(find_library("OSMesa") is None, reason="libOSMesa is not installed")
+def test_osmesa_draws_as_well() -> None:
+    code = (
+        "import numpy as np; from pectinate.figure import render_view;"
+        "p = render_view((np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1.0]]), np.array([[0, 1, 2]])), size=(50, 50));"
+        "assert (p != 255).any()"
+    )
+    environment = os.environ | {"PYOPENGL_PLATFORM": "osmesa"}
+    subprocess.run([sys.executable, "-c", code], check=True, env=environment, timeout=60)
+
+
+def test_a_placement_refuses_a_suffix_that_is_no_picture() -> None:
+    placement = place_streamlines(datasets.demo_atrium(edge_length=4), separation_distance=8)
+    with pytest.raises(InvalidOption, match=r"\.png"):
+        placement.figure("picture.docx")
+    with pytest.raises(InvalidFile, match="folder"):
+        placement.figure("/nowhere/picture.png", views="left", size=(40, 30))
