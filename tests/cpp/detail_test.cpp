@@ -243,7 +243,7 @@ TEST_CASE("edge search: on a flat surface it finds exactly the edges that the ca
   Random random(3);
   for (int round = 0; round < 20; ++round) {
     const auto edge = static_cast<std::int32_t>(random.below(mesh.edges().size()));
-    const auto line = tracer.trace({edge, random.unit()}, nullptr, *workspace);
+    const auto line = tracer.trace(EdgePoint{edge, random.unit()}, nullptr, *workspace);
     const auto segment = random.below(line.triangles.size());
     const double radius = 0.01 + 3 * random.unit();
     const Capsule capsule{position(mesh, line.points[segment]), position(mesh, line.points[segment + 1]), radius};
@@ -262,22 +262,24 @@ TEST_CASE("edge search: on a flat surface it finds exactly the edges that the ca
 TEST_CASE("seed ring: seeds lie at the distance from their line") {
   const auto mesh = jittered_grid(14, 11).mesh();
   const auto field = test::smooth_field(mesh);
-  const StreamlineTracer tracer(mesh, field, {1});
+  const double separation = 0.5;
+  const StreamlineTracer tracer(mesh, field, {separation});
   const auto workspace = StreamlineTracer::make_workspace();
-  for (const double distance : {0.2, 1.3, 2.9}) {
+  for (const double factor : {1.1, 1.3, 5.8}) {
+    const double distance = factor * separation;
     const auto occupancy = make_edge_mask(mesh, tracer);
-    SeedRing ring(mesh, distance);
+    SeedRing ring(mesh, tracer, factor);
     Random random(1);
     CHECK(ring.draw(*occupancy, random) == std::nullopt);
-    const auto line = tracer.trace({mesh.triangle_edges()[150][0], 0.5}, nullptr, *workspace);
+    const auto line = tracer.trace(EdgePoint{mesh.triangle_edges()[150][0], 0.5}, nullptr, *workspace);
     ring.add(line);
     const auto at = test::places(mesh, line);
     std::set<std::int32_t> edges;
     for (int i = 0; i < 300; ++i) {
       const auto seed = ring.draw(*occupancy, random);
       REQUIRE(seed.has_value());
-      CHECK(test::distance_to_polyline(position(mesh, *seed), at) == doctest::Approx(distance).epsilon(1e-9));
-      edges.insert(seed->edge);
+      CHECK(test::distance_to_polyline(position(mesh, seed->point), at) == doctest::Approx(distance).epsilon(1e-9));
+      edges.insert(seed->point.edge);
     }
     CHECK(edges.size() > 20);
   }
@@ -288,12 +290,12 @@ TEST_CASE("seed ring: what the occupancy refuses is not drawn") {
   const auto field = test::smooth_field(mesh);
   const StreamlineTracer tracer(mesh, field, {1});
   const auto workspace = StreamlineTracer::make_workspace();
-  SeedRing ring(mesh, 1.3);
-  ring.add(tracer.trace({mesh.triangle_edges()[150][0], 0.5}, nullptr, *workspace));
+  SeedRing ring(mesh, tracer, 1.3);
+  ring.add(tracer.trace(EdgePoint{mesh.triangle_edges()[150][0], 0.5}, nullptr, *workspace));
   const test::RuledOccupancy left([&](const EdgePoint& point) { return position(mesh, point).x() < 7; });
   const test::RuledOccupancy full([](const EdgePoint&) { return false; });
   Random random(1);
-  for (int i = 0; i < 200; ++i) CHECK(position(mesh, ring.draw(left, random).value()).x() < 7);
+  for (int i = 0; i < 200; ++i) CHECK(position(mesh, ring.draw(left, random).value().point).x() < 7);
   CHECK(ring.draw(full, random) == std::nullopt);
 }
 
@@ -304,13 +306,13 @@ TEST_CASE("seed ring: it offers no seed where no streamline can start") {
   const StreamlineTracer tracer(mesh, field, {0.5});
   const auto occupancy = make_edge_mask(mesh, tracer);
   const auto workspace = StreamlineTracer::make_workspace();
-  SeedRing ring(mesh, 3);
-  ring.add(tracer.trace({mesh.triangle_edges()[12][1], 0.5}, nullptr, *workspace));
+  SeedRing ring(mesh, tracer, 6);
+  ring.add(tracer.trace(EdgePoint{mesh.triangle_edges()[12][1], 0.5}, nullptr, *workspace));
   Random random(1);
   for (int i = 0; i < 2000; ++i) {
     const auto seed = ring.draw(*occupancy, random);
     REQUIRE(seed.has_value());
-    CHECK(tracer.start_triangle(seed->edge).has_value());
+    CHECK(tracer.start_triangle(seed->point.edge) == seed->triangle);
   }
 }
 

@@ -65,15 +65,15 @@ inline void check_streamline(const SurfaceMesh& mesh, const OrientationField& fi
   CHECK(line.length == doctest::Approx(length).epsilon(1e-6));
 }
 
-/// Admits what a function admits.
+/// Admits what a function of the exit point, or of the seed, admits.
 class RuledOccupancy final : public Occupancy {
  public:
   explicit RuledOccupancy(std::function<bool(const EdgePoint&)> rule) : rule_(std::move(rule)) {}
-  bool admits(std::int32_t, const EdgePoint& point) const override { return rule_(point); }
+  bool admits(std::int32_t, double, const EdgePoint& exit) const override { return rule_(exit); }
   void add(const Streamline&) override {}
-  void retire_seed(const EdgePoint&) override {}
-  bool admits_seed(const EdgePoint& seed) const override { return rule_(seed); }
-  std::optional<EdgePoint> draw_seed(SeedRegion, Random&) const override { return std::nullopt; }
+  void retire_seed(const Seed&) override {}
+  bool admits_seed(const Seed& seed) const override { return rule_(seed.point); }
+  std::optional<Seed> draw_seed(SeedRegion, Random&) const override { return std::nullopt; }
   double coverage() const override { return 0; }
 
  private:

@@ -8,6 +8,8 @@
 #include <numeric>
 #include <vector>
 
+#include "detail/crossings.hpp"
+#include "detail/segment_distance.hpp"
 #include "lines.hpp"
 #include "pectinate/placement.hpp"
 
@@ -22,6 +24,47 @@ inline std::vector<std::vector<detail::Vector>> polylines(const Placement& place
     }
   }
   return lines;
+}
+
+/// A piece of a streamline, or a chord of a triangle.
+struct Piece {
+  detail::Vector start, end;
+  std::size_t line = 0;
+  double arc = 0, arc_end = 0;     // of its ends, along the streamline
+  double separation_distance = 0;  // of its triangle
+
+  double length() const { return (end - start).norm(); }
+  double distance(const Piece& other) const { return detail::segment_distance(start, end, other.start, other.end); }
+  /// At a glance; false does not say that it is not.
+  bool is_farther_than(const Piece& other, double distance) const {
+    const detail::Vector between = start + end - other.start - other.end;
+    return between.norm() / 2 - (length() + other.length()) / 2 > distance;
+  }
+};
+
+inline std::vector<Piece> segments_of(const Placement& placement) {
+  const auto& separations = placement.options.separation_distances;
+  std::vector<Piece> segments;
+  const auto lines = polylines(placement);
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    double arc = 0;
+    for (std::size_t k = 0; k + 1 < lines[i].size(); ++k) {
+      Piece piece{lines[i][k], lines[i][k + 1], i, arc, arc, placement.options.separation_distance};
+      piece.arc_end = arc += piece.length();
+      const auto triangle = placement.segment_triangles[segments.size()];
+      if (!separations.empty()) piece.separation_distance = separations[triangle];
+      segments.push_back(piece);
+    }
+  }
+  return segments;
+}
+
+/// The chord of a triangle with this coordinate.
+inline Piece chord_segment(const SurfaceMesh& mesh, const detail::TriangleCrossings& crossings, double chord) {
+  const auto at = [&](detail::Role role) {
+    return detail::position(mesh, {crossings.exits[role].edge, detail::edge_position(crossings, role, chord)});
+  };
+  return {at(detail::low_high), at(detail::exit_role(crossings, detail::low_high, chord))};
 }
 
 inline bool same_bytes(const Placement& a, const Placement& b) {
@@ -104,8 +147,51 @@ inline void check_separation(const Placement& placement, double separation) {
   }
 }
 
-/// The share of the edges' length, sampled, that is within d_sep of a line. Where it is not, and neither is what lies
-/// within two sub-segments of the mask, no segment fits between the lines.
+/// With exact occupancy: whole streamlines are at least d_sep apart.
+inline void check_segment_separation(const Placement& placement, double separation) {
+  const auto segments = segments_of(placement);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (segments[i].line == segments[j].line || segments[i].is_farther_than(segments[j], separation)) continue;
+      least = std::min(least, segments[i].distance(segments[j]));
+    }
+  }
+  CHECK(least >= separation);
+}
+
+/// With method longest: parts of a streamline that are more than 2 d_sep apart along it are at least d_sep apart.
+inline void check_self_separation(const Placement& placement, double separation) {
+  const auto segments = segments_of(placement);
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    for (std::size_t j = i; j-- > 0 && segments[j].line == segments[i].line;) {
+      if (segments[i].arc - segments[j].arc_end <= 2 * separation * (1 + 1e-9)) continue;
+      if (segments[i].is_farther_than(segments[j], separation)) continue;
+      CHECK(segments[i].distance(segments[j]) >= separation * (1 - 1e-9));
+    }
+  }
+}
+
+/// With exact occupancy: no chord is left that keeps d_sep from all streamlines.
+inline void check_complete(const SurfaceMesh& mesh, const OrientationField& field, const Placement& placement,
+                           double separation, int chords_per_triangle = 20) {
+  const auto segments = segments_of(placement);
+  const auto crossings = detail::make_crossings(mesh, field, 1);
+  int free = 0;
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t) {
+    if (!field.has_direction(t)) continue;
+    for (int i = 0; i < chords_per_triangle; ++i) {
+      const auto chord = chord_segment(mesh, crossings[t], (i + 0.5) / chords_per_triangle);
+      free += std::none_of(segments.begin(), segments.end(), [&](const auto& other) {
+        return !chord.is_farther_than(other, 1.01 * separation) && chord.distance(other) < separation * (1 + 1e-5);
+      });
+    }
+  }
+  CHECK(free == 0);
+}
+
+/// With the edge mask. The share of the edges' length, sampled, that is within d_sep of a line. Where it is not, and
+/// neither is what lies within two sub-segments of the mask, no segment fits between the lines.
 inline double check_filled(const SurfaceMesh& mesh, const OrientationField& field, const Placement& placement) {
   const double separation = placement.options.separation_distance;
   const auto lines = polylines(placement);
@@ -127,7 +213,7 @@ inline double check_filled(const SurfaceMesh& mesh, const OrientationField& fiel
       const EdgePoint point{edge, (i + 0.5) / 8};
       covered += (distance(point) <= separation) * mesh.edge_lengths()[edge];
       total += mesh.edge_lengths()[edge];
-      if (strict.admits(0, point)) fit += !tracer.trace(point, &strict, *workspace).triangles.empty();
+      if (strict.admits(0, 0.5, point)) fit += !tracer.trace(point, &strict, *workspace).triangles.empty();
     }
   }
   CHECK(fit == 0);

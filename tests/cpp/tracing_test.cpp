@@ -136,7 +136,7 @@ TEST_CASE("tracing: what is true of every streamline is true on any surface in a
     for (const std::uint64_t seed : {1, 2, 3}) {
       const Bench bench(
           soup, [=](const SurfaceMesh& mesh) { return seed == 1 ? smooth_field(mesh) : random_field(mesh, seed); },
-          {0.2, seed == 3 ? pi : pi / 2});
+          {.separation_distance = 0.2, .abrupt_turn_angle = seed == 3 ? pi : pi / 2});
       for (int round = 0; round < 40; ++round) {
         check_apart_from_itself(places(bench.mesh, bench.trace(bench.random_seed(random))), 0.2);
       }
@@ -233,7 +233,8 @@ TEST_CASE("tracing: it stops at turns above the threshold only, measured on the 
     for (const auto& [before, after] : {std::pair{0.2, 0.7}, {-0.3, 0.3}, {-0.7, 0.7}, {0.1, -1.1}}) {
       const double turn = std::abs(after - before);
       for (const double threshold : {turn - 1e-9, turn + 1e-9}) {
-        const Bench bench(folded_pair(fold), turning(fold, before, after), {0.01, threshold});
+        const Bench bench(folded_pair(fold), turning(fold, before, after),
+                          {.separation_distance = 0.01, .abrupt_turn_angle = threshold});
         const auto line = bench.trace({bench.edge(0, 1), 0.5});
         CHECK((line.triangles.size() == 2) == (threshold > turn));
         CHECK(line.stop_reasons[0] == (threshold > turn ? StopReason::boundary : StopReason::abrupt_turn));
@@ -270,7 +271,8 @@ TEST_CASE("tracing: it stops where the field ends") {
 
 TEST_CASE("tracing: max_steps counts the triangles each way") {
   for (const std::int64_t max_steps : {1, 2, 7}) {
-    const Bench bench(jittered_grid(40, 4), constant(at_angle(0.01)), {0.1, pi / 2, max_steps});
+    const Bench bench(jittered_grid(40, 4), constant(at_angle(0.01)),
+                      {.separation_distance = 0.1, .max_steps = max_steps});
     const auto line = bench.trace({bench.edge(20 + 41 * 2, 20 + 41 * 3), 0.5});
     CHECK(static_cast<std::int64_t>(line.triangles.size()) == 2 * max_steps);
     CHECK(line.seed_index == max_steps);
@@ -307,7 +309,7 @@ TEST_CASE("tracing: it goes on past vertices, however close the seed") {
   const Bench bench(grid(8, 6), constant(Vector(1, 0.5, 0)), {0.1});
   for (const double position : {0.0, 1e-300, 1e-12, 1 - 1e-12, 1.0, -3.0, 4.0}) {
     const auto workspace = StreamlineTracer::make_workspace();
-    const auto line = bench.tracer.trace({bench.edge(3 + 9 * 2, 3 + 9 * 3), position}, nullptr, *workspace);
+    const auto line = bench.tracer.trace(EdgePoint{bench.edge(3 + 9 * 2, 3 + 9 * 3), position}, nullptr, *workspace);
     check_streamline(bench.mesh, bench.field, line);
     const Vector place = detail::position(bench.mesh, line.points[line.seed_index]);
     CHECK(std::abs(line.length - clipped_length(place, Vector(2, 1, 0).normalized(), 8, 6)) < 1e-6);
@@ -423,8 +425,8 @@ TEST_CASE("tracing: options out of range and another mesh's field are refused") 
     CHECK_THROWS_AS(StreamlineTracer(mesh, field, options), InvalidOption);
   };
   for (const double separation : {0.0, -1.0, nan, infinity, 1e-9}) refused({separation});
-  for (const double angle : {0.0, -1.0, 3.2, nan}) refused({1, angle});
-  for (const std::int64_t steps : {0, -5}) refused({1, 1, steps});
+  for (const double angle : {0.0, -1.0, 3.2, nan}) refused({.separation_distance = 1, .abrupt_turn_angle = angle});
+  for (const std::int64_t steps : {0, -5}) refused({.separation_distance = 1, .max_steps = steps});
   const auto small = grid(1, 1).mesh();
   CHECK_THROWS_AS(StreamlineTracer(small, field, {1}), InvalidField);
 }
@@ -437,7 +439,7 @@ TEST_CASE("tracing: where nothing can start it says so") {
   const auto without = mesh.triangle_edges()[1][0];
   CHECK(tracer.start_triangle(mesh.triangle_edges()[0][0]) == 0);
   CHECK(tracer.start_triangle(without) == std::nullopt);
-  CHECK_THROWS_AS(tracer.trace({without, 0.5}, nullptr, *workspace), InvalidField);
+  CHECK_THROWS_AS(tracer.trace(EdgePoint{without, 0.5}, nullptr, *workspace), InvalidField);
 }
 
 }  // namespace pectinate::test

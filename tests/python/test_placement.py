@@ -118,13 +118,24 @@ SURFACES = {
 }
 
 
-@pytest.mark.parametrize("method", ["random", "neighborhood", "distance"])
+METHODS = ("random", "neighborhood", "distance", "longest")
+#: Every method with every occupancy model that it takes.
+WAYS = [{"method": method, "occupancy": "exact"} for method in METHODS] + [
+    {"method": method, "occupancy": "edge_mask"} for method in METHODS if method != "longest"
+]
+
+
+def name_of(way: object) -> str:
+    return "-".join(way.values()) if isinstance(way, dict) else str(way)
+
+
+@pytest.mark.parametrize("way", WAYS, ids=name_of)
 @pytest.mark.parametrize("name", SURFACES)
-def test_every_surface_is_filled(name: str, method: str) -> None:
+def test_every_surface_is_filled(name: str, way: dict[str, Any]) -> None:
     vertices, triangles = SURFACES[name]
     for separation in (0.1, 0.4, 100):
         placement = place_streamlines(
-            model_of((vertices, triangles)), separation_distance=separation, method=method, seed_count=4
+            model_of((vertices, triangles)), separation_distance=separation, seed_count=4, **way
         )
         check_arrays(placement)
         check_statistics(placement)
@@ -144,8 +155,8 @@ def test_triangles_without_a_direction_stay_empty(bad: list[float]) -> None:
     vectors[:, 2] = 0
     empty = np.arange(60, 90)
     vectors[empty] = bad
-    for method in ("random", "neighborhood", "distance"):
-        placement = place_streamlines((*mesh, vectors), separation_distance=0.4, method=method)
+    for way in WAYS:
+        placement = place_streamlines((*mesh, vectors), separation_distance=0.4, **way)
         assert not np.isin(placement.segment_triangles, empty).any()
         assert placement.statistics.surface_area == pytest.approx(len(mesh[1]) / 2 - len(empty) / 2)
         assert placement.statistics.stop_counts["no_field"] > 0
@@ -155,15 +166,18 @@ def test_reversed_vectors_change_no_byte() -> None:
     mesh = sphere(3)
     vectors = smooth(mesh)
     signs = np.random.default_rng(1).choice([-1, 1], size=(len(vectors), 1))
-    one, other = (place_streamlines((*mesh, v), separation_distance=0.2) for v in (vectors, signs * vectors))
-    assert same_bytes(one, other)
+    for way in WAYS:
+        one, other = (place_streamlines((*mesh, v), separation_distance=0.2, **way) for v in (vectors, signs * vectors))
+        assert same_bytes(one, other)
 
 
-def test_threads_change_no_byte_and_the_random_seed_does() -> None:
+@pytest.mark.parametrize("way", WAYS, ids=name_of)
+def test_threads_change_no_byte_and_the_random_seed_does_but_for_longest(way: dict[str, Any]) -> None:
     model = model_of(sphere(3))
-    first = place_streamlines(model, separation_distance=0.2)
-    assert same_bytes(first, place_streamlines(model, separation_distance=0.2, thread_count=3))
-    assert not same_bytes(first, place_streamlines(model, separation_distance=0.2, random_seed=1))
+    first = place_streamlines(model, separation_distance=0.2, **way)
+    assert same_bytes(first, place_streamlines(model, separation_distance=0.2, thread_count=3, **way))
+    other = place_streamlines(model, separation_distance=0.2, random_seed=1, **way)
+    assert same_bytes(first, other) == (way["method"] == "longest")
 
 
 def test_contiguity_and_precision_of_arrays_do_not_matter() -> None:
@@ -181,15 +195,112 @@ def test_contiguity_and_precision_of_arrays_do_not_matter() -> None:
 def test_defaults_are_the_engine_s_and_come_back_as_used() -> None:
     model = model_of(grid())
     assert place_streamlines(model).options == DEFAULTS
-    used = place_streamlines(model, method="random", seed_count=2, random_seed=2**64 - 1).options
-    assert used == DEFAULTS | {"method": "random", "seed_count": 2, "random_seed": 2**64 - 1}
+    assert (DEFAULTS["method"], DEFAULTS["occupancy"]) == ("longest", "exact")
+    given: dict[str, Any] = {"method": "random", "occupancy": "edge_mask", "seed_count": 2, "random_seed": 2**64 - 1}
+    assert place_streamlines(model, **given).options == DEFAULTS | given
+    given = {"seed_clearance": 1.11, "test_distance": 0.9, "minimum_length": 0.25}
+    assert place_streamlines(model, **given).options == DEFAULTS | given
+
+
+def distances(placement: Placement) -> tuple[Floats, Floats]:
+    """For all pairs of points of different streamlines: the distance, and the later one's streamline's index."""
+    line = np.repeat(np.arange(len(placement)), np.diff(placement.offsets))
+    later, earlier = np.nonzero(line[:, None] > line[None, :])
+    return np.linalg.norm(placement.points[later] - placement.points[earlier], axis=1), earlier
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize(("option", "value", "least"), [("seed_clearance", 1.11, 1), ("test_distance", 0.8, 0.8)])
+def test_clearances_keep_what_they_promise(method: str, option: str, value: float, least: float) -> None:
+    model = model_of(grid(16, 12))
+    strict = place_streamlines(model, separation_distance=0.7, method=method)
+    placement = place_streamlines(model, separation_distance=0.7, method=method, **{option: value})
+    check_arrays(placement)
+    check_statistics(placement)
+    assert distances(strict)[0].min() >= 0.7
+    assert distances(placement)[0].min() >= least * 0.7
+    if method == "longest":
+        assert placement.statistics.mean_length > strict.statistics.mean_length
+
+
+@pytest.mark.parametrize("way", WAYS, ids=name_of)
+def test_no_streamline_is_shorter_than_asked(way: dict[str, Any]) -> None:
+    model = model_of(grid(16, 12))
+    assert place_streamlines(model, separation_distance=0.7, **way).lengths.min() < 2
+    placement = place_streamlines(model, separation_distance=0.7, minimum_length=2, **way)
+    assert placement.end == "complete"
+    assert placement.lengths.min() >= 2 * (1 - 1e-6)  # lengths of candidates are summed in single precision
+    nothing = place_streamlines(model, separation_distance=0.7, minimum_length=1000, **way)
+    assert (len(nothing), nothing.end) == (0, "complete")
+
+
+@pytest.mark.parametrize("way", WAYS, ids=name_of)
+@pytest.mark.parametrize("location", ["triangle", "vertex"])
+def test_one_separation_distance_everywhere_is_like_a_number(way: dict[str, Any], location: str) -> None:
+    mesh = torus()
+    model = model_of(mesh)
+    count = len(mesh[1]) if location == "triangle" else len(mesh[0])
+    expected = place_streamlines(model, separation_distance=0.5, **way)
+    assert same_bytes(place_streamlines(model, separation_distance=np.full(count, 0.5), **way), expected)
+    assert same_bytes(place_streamlines(model, separation_distance=[0.5] * count, **way), expected)
+
+
+def test_separation_distances_follow_the_rows_of_the_input() -> None:
+    vertices, triangles = grid(16, 12)
+    centres = vertices[triangles].mean(axis=1)[:, 0]
+    # A row that the mesh drops, a degenerate triangle at the front: its distance does not matter.
+    with_dropped = np.concatenate([[[3, 3, 4]], triangles])
+    vectors = smooth((vertices, with_dropped))
+    separation = np.concatenate([[np.nan], np.where(centres < 8, 0.5, 2.0)])
+    placement = place_streamlines((vertices, with_dropped, vectors), separation_distance=separation)
+    of_mesh = separation[placement.mesh.input_triangle]
+    np.testing.assert_array_equal(of_mesh, np.where(centres < 8, 0.5, 2.0))
+    distance, earlier = distances(placement)
+    assert (distance >= of_mesh[placement.point_triangles[earlier]] * (1 - 1e-12)).all()
+    start, end = segments(placement)
+    length, left = np.linalg.norm(end - start, axis=1), start[:, 0] < 8
+    assert length[left].sum() > 2 * length[~left].sum()
+
+
+def test_separation_distances_of_vertices_are_averaged_over_triangles() -> None:
+    mesh = sphere(3)
+    model = model_of(mesh)
+    of_vertices = 0.2 + 0.1 * mesh[0][:, 2]
+    of_triangles = of_vertices[mesh[1]].mean(axis=1)
+    one, other = (place_streamlines(model, separation_distance=values) for values in (of_vertices, of_triangles))
+    assert same_bytes(one, other)
+
+
+@pytest.mark.parametrize("shape", [(0,), (1,), (23,), (25,), (24, 1), (2, 12)])
+def test_separation_distances_of_another_shape_are_refused(shape: tuple[int, ...]) -> None:
+    with pytest.raises(InvalidOption, match=r"separation_distance .*\(24,\).*\(20,\)"):
+        place_streamlines(model_of(grid()), separation_distance=np.ones(shape))
+
+
+@pytest.mark.parametrize("bad", [0, -1, np.nan, np.inf, 1e-12])
+def test_a_separation_distance_out_of_range_is_refused_and_its_triangle_named(bad: float) -> None:
+    values = np.ones(24)
+    values[7] = bad
+    with pytest.raises(InvalidOption, match="separation_distance of triangle 7"):
+        place_streamlines(model_of(grid()), separation_distance=values)
+
+
+@pytest.mark.parametrize("options", [{}, {"seed_clearance": 1.1}, {"test_distance": 0.9}])
+def test_what_needs_exact_occupancy_is_refused_with_the_mask(options: dict[str, Any]) -> None:
+    method = "random" if options else "longest"
+    with pytest.raises(InvalidOption, match="exact occupancy"):
+        place_streamlines(model_of(grid()), occupancy="edge_mask", method=method, **options)
 
 
 BAD_OPTIONS = {
     "separation_distance": [0, -1, np.nan, np.inf, 1e-12],
     "method": ["nearest", "", None, 3],
-    "seed_count": [0, -1],
+    "occupancy": ["mask", "", None, 1],
+    "seed_count": [0, -1, 10**6 + 1],
     "seed_distance_factor": [0.9, np.nan, np.inf],
+    "seed_clearance": [0.99, 2.01, np.nan],
+    "test_distance": [0, 1.01, -1, np.nan],
+    "minimum_length": [-1, np.nan, np.inf],
     "abrupt_turn_angle": [0, -1, 4, np.nan],
     "max_steps": [0, -7],
     "thread_count": [0, -1, 10**6],
@@ -293,22 +404,28 @@ def test_any_soup_is_filled_or_refused(data: st.DataObject) -> None:
     assert trimesh.Trimesh(tubes.vertices, tubes.triangles, process=False).is_watertight
 
 
-def test_progress_is_told_and_can_stop() -> None:
+@pytest.mark.parametrize("way", WAYS, ids=name_of)
+def test_progress_is_told_and_can_stop(way: dict[str, Any]) -> None:
+    model = model_of(sphere(5, radius=10))  # work for more than the calls below, which are 50 ms apart
     told: list[float] = []
 
-    def stop_later(coverage: float) -> bool:
-        told.append(coverage)
-        time.sleep(0.06)  # longer than the pause between two calls
-        return len(told) < 10  # four calls a step
+    def stop_at(last: int) -> Callable[[float], bool]:
+        def stop(coverage: float) -> bool:
+            told.append(coverage)
+            return len(told) < last
 
-    model = model_of(sphere(3))
-    whole = place_streamlines(model, separation_distance=0.1)
-    part = place_streamlines(model, separation_distance=0.1, progress=stop_later)
-    assert (part.end, whole.end) == ("cancelled", "complete")
+        return stop
+
+    longer = place_streamlines(model, separation_distance=0.05, seed_count=200, progress=stop_at(4), **way)
+    told.clear()
+    part = place_streamlines(model, separation_distance=0.05, seed_count=200, progress=stop_at(3), **way)
+    assert part.end == "cancelled"
+    assert len(told) == 3
     assert told == sorted(told)
     assert told[0] == 0
-    assert 0 < len(part) < len(whole)
-    np.testing.assert_array_equal(part.points, whole.points[: len(part.points)])
+    assert len(part) > 0
+    count = min(len(part), len(longer))
+    np.testing.assert_array_equal(part.points[: part.offsets[count]], longer.points[: longer.offsets[count]])
     check_arrays(part)
     check_statistics(part)
 
@@ -331,8 +448,9 @@ def test_what_progress_raises_comes_through(kind: type[BaseException], thread_co
 
 
 @pytest.mark.skipif(os.name != "posix", reason="needs POSIX signals")
+@pytest.mark.parametrize("way", [WAYS[0], WAYS[-1], {"method": "longest"}], ids=name_of)
 @pytest.mark.parametrize("progress", [None, lambda _: True])
-def test_ctrl_c_is_heard_within_a_second(progress: Callable[[float], bool] | None) -> None:
+def test_ctrl_c_is_heard_within_a_second(progress: Callable[[float], bool] | None, way: dict[str, Any]) -> None:
     model = model_of(sphere(6, radius=20))
     sent: list[float] = []
 
@@ -343,8 +461,8 @@ def test_ctrl_c_is_heard_within_a_second(progress: Callable[[float], bool] | Non
     timer = threading.Timer(0.3, interrupt)
     timer.start()
     try:
-        with pytest.raises(KeyboardInterrupt):  # would take many minutes
-            place_streamlines(model, separation_distance=0.05, seed_count=5000, progress=progress)
+        with pytest.raises(KeyboardInterrupt):  # would take long
+            place_streamlines(model, separation_distance=0.05, seed_count=5000, progress=progress, **way)
     finally:
         timer.cancel()
     assert time.monotonic() - sent[0] < 1

@@ -90,7 +90,11 @@ void ChordOccupancy::add(const Polyline& line) {
 }
 
 void ChordOccupancy::retire_seed(std::int32_t triangle, const Interval& chords) {
-  (has_seed_sets_ ? unseeded_ : stopped_).add(triangle, chords);
+  if (!has_seed_sets_) {
+    unseeded_ = stopped_;
+    has_seed_sets_ = true;
+  }
+  unseeded_.add(triangle, chords);
 }
 
 /// Breadth-first over the surface from the block's own triangles, through whatever is near.

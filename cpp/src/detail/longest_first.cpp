@@ -74,9 +74,12 @@ class LongestFirst {
   bool run(const std::function<bool()>& go_on) {
     chords_.reserve(usual_chords * crossings_.size());
     fill_pool();
-    do {
+    if (!empty_heap(go_on)) return false;
+    // Where all gaps together gave no streamline, they never will.
+    for (std::int64_t before = -1; before != placed_count_ && push_gaps();) {
+      before = placed_count_;
       if (!empty_heap(go_on)) return false;
-    } while (push_gaps());
+    }
     return true;
   }
 
@@ -197,8 +200,8 @@ class LongestFirst {
     bool any = false;
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(crossings_.size()); ++t) {
       for (const auto& gap : occupancy_.unseeded().gaps(t)) {
-        const bool narrow = gap.high - gap.low < least_gap;
-        if (narrow || length(add_trajectory(t, (gap.low + gap.high) / 2, true, 1).stretch) < minimum_length_) {
+        if (gap.high - gap.low < least_gap) continue;
+        if (length(add_trajectory(t, (gap.low + gap.high) / 2, true, 1).stretch) < minimum_length_) {
           occupancy_.retire_seed(t, gap);
         } else {
           any = true;
@@ -228,7 +231,8 @@ class LongestFirst {
   }
 
   bool is_still_first(const Stretch& stretch, std::int32_t trajectory) const {
-    return heap_.empty() || length(stretch) * trajectories_[trajectory].bonus >= heap_.top().key;
+    const double now = length(stretch);
+    return now >= minimum_length_ && (heap_.empty() || now * trajectories_[trajectory].bonus >= heap_.top().key);
   }
 
   /// The longest free stretch of a piece; the others go back to the heap.
@@ -283,8 +287,10 @@ class LongestFirst {
       }
       make_polyline(part);
     }
+    const auto line = make_streamline(part, trajectory);  // while what stops it is not yet in its own neighbourhood
     occupancy_.add(polyline_);
-    place_(make_streamline(part, trajectory));
+    place_(line);
+    ++placed_count_;
     push_hugging();
   }
 
@@ -342,6 +348,7 @@ class LongestFirst {
   Chords chords_;  // of all trajectories, one after the other
   std::vector<Trajectory> trajectories_;
   std::priority_queue<Piece> heap_;
+  std::int64_t placed_count_ = 0;
 
   VisitedChords visited_;
   Chords scratch_;

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "pectinate/occupancy.hpp"
-
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <map>
 
 #include "lines.hpp"
+#include "pectinate/occupancy.hpp"
 
 namespace pectinate::test {
 namespace {
@@ -45,7 +44,7 @@ struct Bench {
   }
 
   bool is_occupied(std::int32_t edge, int sub_segment) const {
-    return !mask->admits(0, {edge, (sub_segment + 0.5) / sub_segments});
+    return !mask->admits(0, 0.5, {edge, (sub_segment + 0.5) / sub_segments});
   }
 
   int occupied_count(std::int32_t edge) const {
@@ -97,7 +96,7 @@ void check_exact(const Bench& bench) {
 
 }  // namespace
 
-TEST_CASE("occupancy: the mask is what the distances to all segments say") {
+TEST_CASE("edge mask: the mask is what the distances to all segments say") {
   Random random(1);
   for (const std::uint64_t field_seed : {0, 1, 2}) {
     for (const double separation : {0.02, 0.3, 0.9, 2.5}) {
@@ -111,7 +110,7 @@ TEST_CASE("occupancy: the mask is what the distances to all segments say") {
   }
 }
 
-TEST_CASE("occupancy: on a sphere too, where lines pass through space") {
+TEST_CASE("edge mask: on a sphere too, where lines pass through space") {
   Random random(2);
   for (const double separation : {0.05, 0.3}) {
     Bench bench(sphere(3), separation, 0);
@@ -120,7 +119,7 @@ TEST_CASE("occupancy: on a sphere too, where lines pass through space") {
   }
 }
 
-TEST_CASE("occupancy: adding only ever adds") {
+TEST_CASE("edge mask: adding only ever adds") {
   Bench bench(jittered_grid(6, 5), 0.4, 3);
   Random random(4);
   std::vector<int> before(bench.edge_count(), 0);
@@ -138,7 +137,7 @@ TEST_CASE("occupancy: adding only ever adds") {
   CHECK(coverage > 0.3);
 }
 
-TEST_CASE("occupancy: another sheet that is near in space only stays free") {
+TEST_CASE("edge mask: another sheet that is near in space only stays free") {
   const double separation = 0.5;
   Bench bench(together(jittered_grid(6, 5), moved(jittered_grid(6, 5), {0, 0, 0.1})), separation, 0);
   bench.add({bench.mesh.triangle_edges()[20][0], 0.5});
@@ -152,7 +151,7 @@ TEST_CASE("occupancy: another sheet that is near in space only stays free") {
   CHECK(occupied_below > 0);
 }
 
-TEST_CASE("occupancy: two sides of a fold are far from each other along the surface") {
+TEST_CASE("edge mask: two sides of a fold are far from each other along the surface") {
   // A long strip folded in the middle: the far half lies 0.2 above the near half.
   const auto strip = mapped(jittered_grid(20, 4, 0.5),
                             [](const Vector& v) { return v.x() <= 5 ? v : Vector(10 - v.x() + 0.2, v.y(), 0.2); });
@@ -162,7 +161,7 @@ TEST_CASE("occupancy: two sides of a fold are far from each other along the surf
   const StreamlineTracer tracer(bench.mesh, field, {0.4});
   const auto workspace = StreamlineTracer::make_workspace();
   // Across the strip at x of about 2, 3 from the fold.
-  const auto& line = tracer.trace({bench.mesh.triangle_edges()[8][0], 0.5}, nullptr, *workspace);
+  const auto& line = tracer.trace(EdgePoint{bench.mesh.triangle_edges()[8][0], 0.5}, nullptr, *workspace);
   REQUIRE(line.length > 1.9);
   bench.mask->add(line);
   for (std::int32_t edge = 0; edge < bench.edge_count(); ++edge) {
@@ -173,7 +172,7 @@ TEST_CASE("occupancy: two sides of a fold are far from each other along the surf
   CHECK(bench.mask->coverage() > 0.02);
 }
 
-TEST_CASE("occupancy: a slit that ends within an edge of the band does not part its sides") {
+TEST_CASE("edge mask: a slit that ends within an edge of the band does not part its sides") {
   // Two columns of squares, joined from y = 9 upwards only; their other sides coincide. A segment across the left one
   // at y = 8.2 is 0.8 from there.
   Soup soup = grid(2, 10);
@@ -192,7 +191,8 @@ TEST_CASE("occupancy: a slit that ends within an edge of the band does not part 
     const auto mask = make_edge_mask(mesh, tracer);
     const auto workspace = StreamlineTracer::make_workspace();
     const auto left_border = mesh.triangle_edges()[4 * 8 + 1][2];  // from (0, 8) to (0, 9)
-    const auto& line = tracer.trace({left_border, mesh.runs_along(4 * 8 + 1, 2) ? 0.8 : 0.2}, nullptr, *workspace);
+    const auto& line =
+        tracer.trace(EdgePoint{left_border, mesh.runs_along(4 * 8 + 1, 2) ? 0.8 : 0.2}, nullptr, *workspace);
     mask->add(line);
     const auto at = places(mesh, line);
     REQUIRE(line.length == doctest::Approx(1).epsilon(1e-5));
@@ -200,13 +200,13 @@ TEST_CASE("occupancy: a slit that ends within an edge of the band does not part 
     for (std::int32_t edge = 0; edge < static_cast<std::int32_t>(mesh.edges().size()); ++edge) {
       for (int i = 0; i < sub_segments; ++i) {
         const EdgePoint point{edge, (i + 0.5) / sub_segments};
-        if (mask->admits(0, point)) CHECK(distance_to_polyline(detail::position(mesh, point), at) > separation);
+        if (mask->admits(0, 0.5, point)) CHECK(distance_to_polyline(detail::position(mesh, point), at) > separation);
       }
     }
   }
 }
 
-TEST_CASE("occupancy: the search crosses a cut, where surfaces touch") {
+TEST_CASE("edge mask: the search crosses a cut, where surfaces touch") {
   const auto mesh = three_on_an_edge().mesh();
   const auto field = constant_field(mesh, Vector(0.3, 0.2, 1));
   const StreamlineTracer tracer(mesh, field, {0.3});
@@ -214,18 +214,18 @@ TEST_CASE("occupancy: the search crosses a cut, where surfaces touch") {
   const auto workspace = StreamlineTracer::make_workspace();
   const auto shared = mesh.triangle_edges()[0][0];
   REQUIRE(mesh.edge_triangles(shared).size() == 3);
-  mask->add(tracer.trace({shared, 0.5}, nullptr, *workspace));
+  mask->add(tracer.trace(EdgePoint{shared, 0.5}, nullptr, *workspace));
   for (std::int32_t t = 0; t < 3; ++t) {
     int touched = 0;
     for (const auto edge : mesh.triangle_edges()[t]) {
       if (edge == shared) continue;
-      for (int i = 0; i < sub_segments; ++i) touched += !mask->admits(t, {edge, (i + 0.5) / sub_segments});
+      for (int i = 0; i < sub_segments; ++i) touched += !mask->admits(t, 0.5, {edge, (i + 0.5) / sub_segments});
     }
     CHECK(touched > 0);
   }
 }
 
-TEST_CASE("occupancy: seeds are drawn evenly by length from what is free") {
+TEST_CASE("edge mask: seeds are drawn evenly by length from what is free") {
   Bench bench(jittered_grid(4, 3), 0.35, 0);
   bench.add({bench.mesh.triangle_edges()[5][1], 0.5});
   Random random(8);
@@ -245,8 +245,8 @@ TEST_CASE("occupancy: seeds are drawn evenly by length from what is free") {
       const auto seed = bench.mask->draw_seed(region, random);
       REQUIRE(seed.has_value());
       CHECK(bench.mask->admits_seed(*seed));
-      ++counts[seed->edge];
-      if (bench.occupied_count(seed->edge) == 0) sum_of_positions += seed->position - 0.5;
+      ++counts[seed->point.edge];
+      if (bench.occupied_count(seed->point.edge) == 0) sum_of_positions += seed->point.position - 0.5;
     }
     double chi_square = 0;
     int freedom = -1;
@@ -263,14 +263,15 @@ TEST_CASE("occupancy: seeds are drawn evenly by length from what is free") {
   }
 }
 
-TEST_CASE("occupancy: a drawn point may be anywhere in its free sub-segment") {
+TEST_CASE("edge mask: a drawn point may be anywhere in its free sub-segment") {
   Bench bench(one_triangle(), 0.1, 0);
   Random random(9);
   std::map<std::int32_t, std::vector<double>> positions;
   for (int i = 0; i < 3000; ++i) {
     const auto seed = bench.mask->draw_seed(SeedRegion::free, random);
     REQUIRE(seed.has_value());
-    positions[seed->edge].push_back(seed->position * sub_segments - std::floor(seed->position * sub_segments));
+    const double place = seed->point.position * sub_segments;
+    positions[seed->point.edge].push_back(place - std::floor(place));
   }
   CHECK(positions.size() == 3);
   for (const auto& [edge, within] : positions) {
@@ -279,7 +280,7 @@ TEST_CASE("occupancy: a drawn point may be anywhere in its free sub-segment") {
   }
 }
 
-TEST_CASE("occupancy: a retired seed is not drawn again, but can be crossed and is not covered") {
+TEST_CASE("edge mask: a retired seed is not drawn again, but can be crossed and is not covered") {
   Bench bench(one_triangle(), 0.1, 0);
   Random random(9);
   for (int left = 3 * sub_segments; left > 0; --left) {
@@ -287,7 +288,7 @@ TEST_CASE("occupancy: a retired seed is not drawn again, but can be crossed and 
     REQUIRE(seed.has_value());
     bench.mask->retire_seed(*seed);
     CHECK(!bench.mask->admits_seed(*seed));
-    CHECK(bench.mask->admits(0, *seed));
+    CHECK(bench.mask->admits(0, 0.5, seed->point));
   }
   for (const auto region : {SeedRegion::free, SeedRegion::partly_free, SeedRegion::wholly_free}) {
     CHECK(bench.mask->draw_seed(region, random) == std::nullopt);
@@ -295,7 +296,7 @@ TEST_CASE("occupancy: a retired seed is not drawn again, but can be crossed and 
   CHECK(bench.mask->coverage() == 0);
 }
 
-TEST_CASE("occupancy: a line that covers all leaves nothing to draw") {
+TEST_CASE("edge mask: a line that covers all leaves nothing to draw") {
   Bench bench(jittered_grid(4, 3), 100, 0);
   bench.add({0, 0.5});
   CHECK(bench.mask->coverage() == 1);
@@ -303,15 +304,15 @@ TEST_CASE("occupancy: a line that covers all leaves nothing to draw") {
   CHECK(bench.mask->draw_seed(SeedRegion::free, random) == std::nullopt);
 }
 
-TEST_CASE("occupancy: edges where no streamline can start are neither drawn nor counted") {
+TEST_CASE("edge mask: edges where no streamline can start are neither drawn nor counted") {
   const auto mesh = together(one_triangle(), moved(one_triangle(), {3, 0, 0})).mesh();
   const auto field = OrientationField::from_triangle_vectors(mesh, std::vector<Vec3>{{1, 0.3, 0}, {0, 0, 0}});
   const StreamlineTracer tracer(mesh, field, {5});
   const auto mask = make_edge_mask(mesh, tracer);
   Random random(1);
-  for (int i = 0; i < 500; ++i) CHECK(tracer.start_triangle(mask->draw_seed(SeedRegion::free, random)->edge) == 0);
+  for (int i = 0; i < 500; ++i) CHECK(mask->draw_seed(SeedRegion::free, random)->triangle == 0);
   const auto workspace = StreamlineTracer::make_workspace();
-  mask->add(tracer.trace({mesh.triangle_edges()[0][0], 0.4}, nullptr, *workspace));
+  mask->add(tracer.trace(EdgePoint{mesh.triangle_edges()[0][0], 0.4}, nullptr, *workspace));
   CHECK(mask->coverage() == 1);
 }
 

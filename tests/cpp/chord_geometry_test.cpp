@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "detail/chord_shadow.hpp"
+#include "detail/interval_sets.hpp"
+#include "detail/segment_distance.hpp"
+#include "detail/self_free_run.hpp"
+#include "placement_checks.hpp"
+
+namespace pectinate::detail {
+namespace {
+
+using test::Soup;
+
+Vector draw_vector(Random& random, double size = 1) {
+  const double x = random.unit(), y = random.unit(), z = random.unit();
+  return size * Vector(2 * x - 1, 2 * y - 1, 2 * z - 1);
+}
+
+// Distances between segments -----------------------------------------------------------------------------------------
+
+/// By search: the distance to a segment is convex along another one.
+double searched_distance(const Vector& p, const Vector& p_end, const Vector& q, const Vector& q_end) {
+  double low = 0, high = 1;
+  const auto distance = [&](double t) { return distance_to_segment(p + t * (p_end - p), q, q_end); };
+  for (int i = 0; i < 200; ++i) {
+    const double one = low + (high - low) / 3, other = high - (high - low) / 3;
+    if (distance(one) <= distance(other)) {
+      high = other;
+    } else {
+      low = one;
+    }
+  }
+  return std::min({distance(0), distance(1), distance((low + high) / 2)});
+}
+
+void check_segment_distance(const Vector& p, const Vector& p_end, const Vector& q, const Vector& q_end) {
+  const double found = segment_distance(p, p_end, q, q_end);
+  const double size = 1 + (p_end - p).norm() + (q_end - q).norm() + (p - q).norm();
+  CHECK(std::abs(found - searched_distance(p, p_end, q, q_end)) <= 2e-8 * size);
+  CHECK(std::abs(found - segment_distance(q, q_end, p, p_end)) <= 1e-13 * size);
+  CHECK(std::abs(found - segment_distance(p_end, p, q, q_end)) <= 1e-13 * size);
+}
+
+// Self-approach ------------------------------------------------------------------------------------------------------
+
+/// The length of the longest run by comparing all pairs; checks that a run found otherwise has it and is free.
+void check_longest_run(const std::vector<Vector>& points, double distance, double arc_gap) {
+  const auto count = points.size() - 1;
+  std::vector<double> arc{0};
+  for (std::size_t i = 0; i < count; ++i) arc.push_back(arc.back() + (points[i + 1] - points[i]).norm());
+  const auto conflict = [&](std::size_t i, std::size_t j) {
+    return arc[j] - arc[i + 1] > arc_gap &&
+           segment_distance(points[i], points[i + 1], points[j], points[j + 1]) < distance;
+  };
+  // Without conflicts a run from `first` reaches up to `reached[first]`.
+  double longest = 0;
+  std::vector<std::size_t> reached(count, count);
+  for (std::size_t first = count; first-- > 0;) {
+    if (first + 1 < count) reached[first] = reached[first + 1];
+    for (std::size_t j = first + 1; j < reached[first]; ++j) {
+      if (conflict(first, j)) reached[first] = j;
+    }
+    longest = std::max(longest, arc[reached[first]] - arc[first]);
+  }
+  const auto run = longest_self_free_run(points, distance, arc_gap);
+  REQUIRE(run.first < run.last);
+  REQUIRE(run.last <= count);
+  CHECK(run.last <= reached[run.first]);
+  CHECK(arc[run.last] - arc[run.first] >= longest * (1 - 1e-12));
+}
+
+// Shadows ------------------------------------------------------------------------------------------------------------
+
+/// A random triangle with a random direction in it.
+struct RandomTriangle {
+  explicit RandomTriangle(Random& random, double flatness = 1)
+      : mesh(Soup{{vec3(draw_vector(random)), vec3(draw_vector(random)), vec3(draw_vector(random))}, {{0, 1, 2}}}
+                 .mesh()),
+        field(test::constant_field(mesh, draw_direction(mesh, random, flatness))),
+        crossings(make_crossings(mesh, field, 1)[0]),
+        frame(mesh, 0, crossings) {}
+
+  /// Close to parallel to a side if `flatness` is small.
+  static Vector draw_direction(const SurfaceMesh& mesh, Random& random, double flatness) {
+    const Vector side = test::corner(mesh, 0, 1) - test::corner(mesh, 0, 0);
+    return side + flatness * draw_vector(random, 2);
+  }
+
+  Vector draw_point(Random& random) const {
+    const Vector& a = test::corner(mesh, 0, 0);
+    return a + random.unit() * (test::corner(mesh, 0, 1) - a) + random.unit() * (test::corner(mesh, 0, 2) - a);
+  }
+
+  SurfaceMesh mesh;
+  OrientationField field;
+  TriangleCrossings crossings;
+  ChordFrame frame;
+};
+
+/// The shadow holds the chords that come within the radius of the axis, no more and no less.
+void check_shadow(const RandomTriangle& triangle, const Capsule& capsule) {
+  const double tolerance = 1e-8 * (1 + capsule.radius);
+  const auto reach = triangle.frame.reach(capsule);
+  const auto shadow = reach ? triangle.frame.shadow(capsule, *reach) : std::nullopt;
+  if (shadow) {
+    CHECK(shadow->low <= shadow->high);
+    CHECK(shadow->low >= std::max(reach->chords.low, 0.0) - 1e-9);
+    CHECK(shadow->high <= std::min(reach->chords.high, 1.0) + 1e-9);
+  }
+  for (int i = 0; i <= 60; ++i) {
+    const double chord = std::clamp(i / 60.0, 1e-6, 1 - 1e-6);
+    const auto piece = test::chord_segment(triangle.mesh, triangle.crossings, chord);
+    const double distance = segment_distance(piece.start, piece.end, capsule.start, capsule.end);
+    if (std::abs(distance - capsule.radius) < tolerance) continue;
+    const bool inside = shadow && shadow->low <= chord && chord <= shadow->high;
+    CHECK(inside == (distance < capsule.radius));
+    if (distance < capsule.radius) CHECK((reach && reach->chords.low <= chord && chord <= reach->chords.high));
+  }
+}
+
+}  // namespace
+
+TEST_CASE("segment distance: by search, whatever the order") {
+  Random random(1);
+  for (int round = 0; round < 2000; ++round) {
+    check_segment_distance(draw_vector(random), draw_vector(random), draw_vector(random), draw_vector(random));
+  }
+}
+
+TEST_CASE("segment distance: parallel, collinear, crossing, touching and point-like segments") {
+  CHECK(segment_distance({0, 0, 0}, {1, 0, 0}, {0.2, 2, 0}, {0.7, 2, 0}) == 2);
+  CHECK(segment_distance({0, 0, 0}, {1, 0, 0}, {4, 0, 0}, {2, 0, 0}) == 1);
+  CHECK(segment_distance({0, 0, 0}, {2, 0, 0}, {1, 0, 0}, {3, 0, 0}) == 0);
+  CHECK(segment_distance({-1, 0, 0}, {1, 0, 0}, {0, -1, 0.5}, {0, 1, 0.5}) == 0.5);
+  CHECK(segment_distance({-1, 0, 0}, {1, 0, 0}, {1, 0, 0}, {1, 7, 0}) == 0);
+  CHECK(segment_distance({3, 4, 0}, {3, 4, 0}, {0, 0, 0}, {0, 0, 0}) == 5);
+  CHECK(segment_distance({3, 4, 0}, {3, 4, 0}, {-9, 0, 0}, {9, 0, 0}) == 4);
+  Random random(2);
+  for (int round = 0; round < 500; ++round) {
+    const Vector p = draw_vector(random), step = draw_vector(random), q = draw_vector(random);
+    for (const double tilt : {0.0, 1e-15, 1e-12, 1e-9, 1e-6}) {
+      const Vector almost = step + tilt * draw_vector(random);
+      check_segment_distance(p, p + step, q, q + 0.7 * almost);
+      check_segment_distance(p, p + step, p + 0.2 * step, p + 0.9 * almost);
+      check_segment_distance(p, p + tilt * step, q, q + almost);
+    }
+  }
+}
+
+TEST_CASE("self-free run: as long as comparing all segments allows") {
+  Random random(3);
+  for (int round = 0; round < 60; ++round) {
+    const double distance = 0.05 + 0.4 * random.unit();
+    std::vector<Vector> points{draw_vector(random, 100)};
+    for (int i = 0; i < 120; ++i) points.push_back(points.back() + draw_vector(random, round % 2 ? 0.1 : 0.4));
+    for (const double gap : {0.0, 1.0, 2.0, 5.0}) check_longest_run(points, distance, gap * distance);
+  }
+}
+
+TEST_CASE("self-free run: of spirals, circles, figures of eight and straight lines") {
+  const auto curve = [](int count, const auto& at) {
+    std::vector<Vector> points;
+    for (int i = 0; i < count; ++i) points.push_back(at(static_cast<double>(i) / count));
+    return points;
+  };
+  const auto eight = [](double t) -> Vector { return {std::sin(13 * t), std::sin(26 * t) / 2, 0}; };
+  const auto circle = [](double t) -> Vector { return {std::cos(15 * t), std::sin(15 * t), 0.1 * t}; };
+  const auto spiral = [](double t) -> Vector { return {t * std::cos(40 * t), t * std::sin(40 * t), 0}; };
+  const auto straight = [](double t) -> Vector { return {9 * t, 0, -4 * t}; };
+  for (const double distance : {0.02, 0.1, 0.15, 0.3, 1.0, 30.0}) {
+    for (const auto& points : {curve(300, eight), curve(300, circle), curve(300, spiral), curve(9, circle)}) {
+      check_longest_run(points, distance, 2 * distance);
+    }
+    const auto run = longest_self_free_run(curve(50, straight), distance, 2 * distance);
+    CHECK((run.first == 0 && run.last == 49));
+  }
+}
+
+TEST_CASE("interval sets: they hold the union of what was added") {
+  Random random(4);
+  for (int round = 0; round < 30; ++round) {
+    const std::size_t count = 4;
+    IntervalSets sets(count);
+    std::vector<std::vector<Interval>> added(count);
+    for (int step = 0; step < 60; ++step) {
+      const auto item = static_cast<std::int32_t>(random.below(count));
+      // Multiples of 1/64 touch now and then; some reach beyond [0, 1].
+      const double middle = static_cast<double>(random.below(65)) / 64;
+      const double half = static_cast<double>(random.below(round % 3 == 0 ? 15 : 3)) / 64;
+      sets.add(item, {middle - half, middle + half});
+      added[item].push_back({middle - half, middle + half});
+
+      const auto holds = [&](double x) {
+        return std::any_of(added[item].begin(), added[item].end(),
+                           [&](const auto& one) { return one.low <= x && x <= one.high; });
+      };
+      const auto intervals = sets.intervals(item), gaps = sets.gaps(item);
+      bool all = true;
+      for (int i = 0; i <= 128; ++i) {
+        const double x = i / 128.0;
+        CHECK(sets.contains(item, x) == holds(x));
+        all = all && holds(x);
+        const auto is_in = [&](const auto& one) { return one.low <= x && x <= one.high; };
+        CHECK(std::any_of(intervals.begin(), intervals.end(), is_in) == holds(x));
+        const auto is_open_in = [&](const auto& one) { return one.low < x && x < one.high; };
+        if (i % 128 != 0) CHECK(std::any_of(gaps.begin(), gaps.end(), is_open_in) == !holds(x));
+        const Interval ahead{x, x + 0.1};
+        const bool expected = std::any_of(intervals.begin(), intervals.end(), [&](const auto& one) {
+          return one.low <= ahead.low && ahead.high <= one.high;
+        });
+        CHECK((sets.contains(item, ahead) == expected || sets.is_full(item)));
+      }
+      CHECK(sets.is_full(item) == all);
+      CHECK(!sets.is_empty(item));
+      CHECK(gaps.empty() == all);
+      for (std::size_t i = 0; i + 1 < intervals.size(); ++i) CHECK(intervals[i].high < intervals[i + 1].low);
+      double measure = 0;
+      for (const auto& one : intervals) measure += std::clamp(one.high, 0.0, 1.0) - std::clamp(one.low, 0.0, 1.0);
+      for (const auto& one : gaps) measure += one.high - one.low;
+      CHECK(measure == doctest::Approx(1).epsilon(1e-15));
+    }
+  }
+}
+
+TEST_CASE("interval sets: filled is filled, whatever was there and comes") {
+  IntervalSets sets(3);
+  CHECK(sets.is_empty(1));
+  CHECK(sets.gaps(1).size() == 1);
+  CHECK(sets.intervals(1).empty());
+  sets.add(1, {0.2, 0.3});
+  sets.add(1, {0.6, 0.7});
+  sets.fill(1);
+  sets.add(1, {0.4, 0.5});
+  CHECK(sets.is_full(1));
+  CHECK(sets.contains(1, 0.35));
+  CHECK(sets.gaps(1).empty());
+  CHECK(sets.intervals(1).size() == 1);
+  CHECK((sets.is_empty(0) && sets.is_empty(2)));
+  // What was released is used again, by other items.
+  sets.add(0, {0.1, 0.2});
+  sets.add(2, {0.3, 0.4});
+  CHECK((sets.contains(0, 0.15) && !sets.contains(0, 0.35) && sets.contains(2, 0.35) && !sets.contains(2, 0.15)));
+}
+
+TEST_CASE("chord shadow: the chords that enter a capsule, by definition") {
+  Random random(5);
+  for (int round = 0; round < 4000; ++round) {
+    const RandomTriangle triangle(random);
+    const double radius = std::exp(-5 * random.unit()) * 1.5;
+    const Vector start = triangle.draw_point(random) + draw_vector(random, 1.2 * radius);
+    check_shadow(triangle, {start, start + draw_vector(random, 2 * random.unit()), radius});
+  }
+}
+
+TEST_CASE("chord shadow: of capsules normal to the triangle, parallel to it, along its chords, and of balls") {
+  Random random(6);
+  for (int round = 0; round < 500; ++round) {
+    const RandomTriangle triangle(random);
+    const Vector normal = vector(triangle.mesh.triangle_normals()[0]);
+    const Vector along = vector(triangle.field.directions()[0]), across = normal.cross(along);
+    const double radius = 0.02 + random.unit();
+    for (const double height : {0.0, 0.5, 0.9999, 1.0001}) {
+      const Vector start = triangle.draw_point(random) + height * radius * normal;
+      for (const double length : {0.0, 1e-14, 1e-7, 0.4, 5.0}) {
+        for (const Vector& axis :
+             {normal, along, across, Vector(along + 1e-9 * normal), Vector(-normal - 1e-8 * along)}) {
+          check_shadow(triangle, {start, start + length * axis, radius});
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("chord shadow: in triangles with a direction close to a side") {
+  Random random(7);
+  for (const double flatness : {1e-3, 1e-6, 1e-9, 0.0}) {
+    for (int round = 0; round < 200; ++round) {
+      const RandomTriangle triangle(random, flatness);
+      const double radius = 0.02 + 0.5 * random.unit();
+      const Vector start = triangle.draw_point(random) + draw_vector(random, radius);
+      check_shadow(triangle, {start, start + draw_vector(random, 0.5), radius});
+    }
+  }
+}
+
+}  // namespace pectinate::detail

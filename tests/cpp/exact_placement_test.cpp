@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "placement_checks.hpp"
+
+namespace pectinate::test {
+namespace {
+
+using detail::Vector;
+
+constexpr auto all_methods = {PlacementMethod::random, PlacementMethod::neighborhood, PlacementMethod::distance,
+                              PlacementMethod::longest};
+constexpr auto longest = PlacementMethod::longest;
+
+PlacementOptions with(double separation, PlacementMethod method = longest) {
+  PlacementOptions options;
+  options.separation_distance = separation;
+  options.method = method;
+  options.seed_count = 6;
+  return options;
+}
+
+/// Fields that ask much of the engine, by name.
+struct NamedField {
+  const char* name;
+  Vector (*at)(const Vector& centre, double noise);
+};
+
+constexpr NamedField hard_fields[] = {
+    {"noise", [](const Vector&, double noise) { return Vector(std::cos(9 * noise), std::sin(9 * noise), 0); }},
+    {"patches of zero",
+     [](const Vector& c, double noise) { return noise < 0.4 ? Vector(0, 0, 0) : Vector(1, std::sin(c.x()), 0); }},
+    {"patches of not a number",
+     [](const Vector& c, double noise) {
+       return noise < 0.2 ? Vector(std::nan(""), 0, 0) : Vector(std::cos(c.y()), 1, 0);
+     }},
+    {"convergent edges", [](const Vector& c, double) { return Vector(c.x() < 6.1 ? 0.2 : -0.2, 1, 0); }},
+    {"turns everywhere",
+     [](const Vector& c, double) {
+       return std::fmod(c.x() + 2 * c.y(), 2) < 1 ? Vector(1, 0.1, 0) : Vector(0.1, 1, 0);
+     }},
+    {"vortex", [](const Vector& c, double) { return Vector(-(c.y() - 4.2), c.x() - 6.3, 0); }},
+    {"spiral",
+     [](const Vector& c, double) {
+       const Vector r = c - Vector(6.3, 4.2, 0);
+       return Vector(-r.y() + 0.06 * r.x(), r.x() + 0.06 * r.y(), 0);
+     }},
+    {"sink", [](const Vector& c, double) { return Vector(c - Vector(6.3, 4.2, 0)); }},
+    {"wedge",
+     [](const Vector& c, double) {
+       const double half = std::atan2(c.y() - 4.2, c.x() - 6.3) / 2;
+       return Vector(std::cos(half), std::sin(half), 0);
+     }},
+};
+
+OrientationField make_field(const SurfaceMesh& mesh, const NamedField& field) {
+  Random random(3);
+  return field_of(mesh, [&](const Vector& c, const Vector&) { return field.at(c, random.unit()); });
+}
+
+/// How far each streamline keeps from those placed before it, at the segment that is farthest; in d_sep.
+std::vector<double> greatest_clearances(const Placement& placement) {
+  const auto segments = segments_of(placement);
+  std::vector<double> greatest(placement.lengths.size(), 0);
+  for (const auto& segment : segments) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& other : segments) {
+      if (other.line >= segment.line) break;
+      if (segment.is_farther_than(other, 3 * other.separation_distance)) continue;
+      least = std::min(least, segment.distance(other) / other.separation_distance);
+    }
+    greatest[segment.line] = std::max(greatest[segment.line], least);
+  }
+  return greatest;
+}
+
+std::vector<double> separations_over(const SurfaceMesh& mesh, double least, double most) {
+  std::vector<double> separations;
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t) {
+    separations.push_back(least + (most - least) * (0.5 + 0.5 * std::sin(centre(mesh, t).x())));
+  }
+  return separations;
+}
+
+std::int64_t stop_count(const Placement& placement, StopReason reason) {
+  return placement.statistics.stop_counts[static_cast<std::size_t>(reason)];
+}
+
+}  // namespace
+
+TEST_CASE("exact placement: whatever the field and the separation distance, it is even and complete") {
+  const auto mesh = jittered_grid(12, 9).mesh();
+  for (const auto& hard : hard_fields) {
+    CAPTURE(hard.name);
+    const auto field = make_field(mesh, hard);
+    for (const double separation : {0.05, 0.31, 1.0, 4.0, 50.0}) {
+      CAPTURE(separation);
+      const auto placement = checked(mesh, field, with(separation));
+      check_segment_separation(placement, separation);
+      check_self_separation(placement, separation);
+      check_complete(mesh, field, placement, separation, 10);
+      CHECK(placement.statistics.coverage > 1 - 1e-6);
+    }
+  }
+}
+
+TEST_CASE("exact placement: the paper's methods are even and complete too") {
+  const auto mesh = jittered_grid(12, 9).mesh();
+  for (const auto& hard : hard_fields) {
+    CAPTURE(hard.name);
+    const auto field = make_field(mesh, hard);
+    for (const auto method : all_methods) {
+      const auto placement = checked(mesh, field, with(0.6, method));
+      check_segment_separation(placement, 0.6);
+      check_complete(mesh, field, placement, 0.6, 10);
+    }
+  }
+}
+
+TEST_CASE("exact placement: with a clearance for seeds lines stay d_sep apart and start in wider gaps only") {
+  const auto mesh = jittered_grid(12, 9).mesh();
+  for (const auto& hard : hard_fields) {
+    CAPTURE(hard.name);
+    const auto field = make_field(mesh, hard);
+    for (const auto method : all_methods) {
+      auto options = with(0.4, method);
+      options.seed_clearance = 1.11;
+      const auto placement = checked(mesh, field, options);
+      check_segment_separation(placement, 0.4);
+      check_complete(mesh, field, placement, 1.11 * 0.4, 10);
+      for (const double clearance : greatest_clearances(placement)) CHECK(clearance >= 1.11);
+      if (method == longest) check_self_separation(placement, 0.4);
+    }
+  }
+}
+
+TEST_CASE("exact placement: a clearance for seeds gives longer and fewer lines") {
+  const auto mesh = sphere(4, 4).mesh();
+  const auto field = smooth_field(mesh);
+  auto options = with(0.3);
+  const auto strict = place_streamlines(mesh, field, options).statistics;
+  options.seed_clearance = 1.11;
+  const auto wider = place_streamlines(mesh, field, options).statistics;
+  CHECK(wider.mean_length > strict.mean_length);
+  CHECK(wider.streamline_count < strict.streamline_count);
+  CHECK(wider.coverage > 0.98);
+}
+
+TEST_CASE("exact placement: with a test distance lines run on until they are that near") {
+  const auto mesh = jittered_grid(12, 9).mesh();
+  for (const auto& hard : hard_fields) {
+    CAPTURE(hard.name);
+    const auto field = make_field(mesh, hard);
+    for (const auto method : all_methods) {
+      auto options = with(0.4, method);
+      options.test_distance = 0.8;
+      const auto placement = checked(mesh, field, options);
+      check_segment_separation(placement, 0.8 * 0.4);
+      check_complete(mesh, field, placement, 0.4, 10);
+      for (const double clearance : greatest_clearances(placement)) CHECK(clearance >= 1);
+    }
+  }
+}
+
+TEST_CASE("exact placement: no line is shorter than asked") {
+  const auto mesh = jittered_grid(12, 9).mesh();
+  for (const auto& hard : hard_fields) {
+    CAPTURE(hard.name);
+    const auto field = make_field(mesh, hard);
+    for (const auto method : all_methods) {
+      for (const double minimum : {0.3, 2.0, 6.0}) {
+        CAPTURE(minimum);
+        auto options = with(0.4, method);
+        options.minimum_length = minimum;
+        options.seed_clearance = minimum > 1 ? 1 : 1.11;
+        const auto placement = place_streamlines(mesh, field, options);
+        CHECK(placement.end == PlacementEnd::complete);
+        for (const double length : placement.lengths) CHECK(length >= minimum * (1 - 1e-6));
+        check_segment_separation(placement, 0.4);
+      }
+    }
+  }
+}
+
+TEST_CASE("exact placement: seeds that were too short do not stop others") {
+  // Lines beside the border are cut off by nothing; so nothing may end at others but where others are.
+  const auto mesh = jittered_grid(12, 9).mesh();
+  const auto field = smooth_field(mesh);
+  for (const auto method : all_methods) {
+    auto options = with(0.4, method);
+    options.minimum_length = 3;
+    const auto placement = checked(mesh, field, options);
+    const auto segments = segments_of(placement);
+    const auto crossings = detail::make_crossings(mesh, field, options.abrupt_turn_angle);
+    double covered = 0, area = 0;
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t) {
+      for (int i = 0; i < 40; ++i) {
+        const auto chord = chord_segment(mesh, crossings[t], (i + 0.5) / 40);
+        const bool taken = std::any_of(segments.begin(), segments.end(), [&](const auto& segment) {
+          return !chord.is_farther_than(segment, 0.4) && chord.distance(segment) < 0.4;
+        });
+        const double weight = chord.length() * crossings[t].width;
+        covered += taken ? weight : 0;
+        area += weight;
+      }
+    }
+    CHECK(std::abs(placement.statistics.coverage - covered / area) < 0.005);
+  }
+}
+
+TEST_CASE("exact placement: the same separation distance everywhere gives the same bytes as one number") {
+  const auto mesh = sphere(3, 4).mesh();
+  const auto field = smooth_field(mesh);
+  for (const auto occupancy : {OccupancyModel::exact, OccupancyModel::edge_mask}) {
+    for (const auto method : all_methods) {
+      if (method == longest && occupancy == OccupancyModel::edge_mask) continue;
+      auto options = with(0.7, method);
+      options.occupancy = occupancy;
+      const auto expected = place_streamlines(mesh, field, options);
+      options.separation_distances.assign(mesh.triangle_count(), 0.7);
+      options.separation_distance = 123;
+      const auto placement = place_streamlines(mesh, field, options);
+      CHECK(same_bytes(placement, expected));
+      CHECK(placement.statistics.mean_spacing_ratio ==
+            doctest::Approx(expected.statistics.mean_spacing_ratio).epsilon(1e-12));
+    }
+  }
+}
+
+TEST_CASE("exact placement: where the separation distance varies, that of the line placed first counts") {
+  const auto mesh = jittered_grid(16, 12).mesh();
+  for (const std::uint64_t seed : {0, 1}) {
+    const auto field = seed == 0 ? smooth_field(mesh) : random_field(mesh, seed);
+    for (const auto method : all_methods) {
+      for (const auto& [least, most] : {std::pair{0.3, 1.2}, {1.0, 5.0}}) {
+        auto options = with(1, method);
+        options.separation_distances = separations_over(mesh, least, most);
+        const auto placement = checked(mesh, field, options);
+        const auto segments = segments_of(placement);
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const auto& later : segments) {
+          for (const auto& earlier : segments) {
+            if (earlier.line >= later.line) break;
+            if (later.is_farther_than(earlier, 2 * earlier.separation_distance)) continue;
+            nearest = std::min(nearest, later.distance(earlier) / earlier.separation_distance);
+          }
+        }
+        CHECK(nearest >= 1);
+        CHECK(placement.statistics.mean_spacing / placement.statistics.mean_spacing_ratio >= least);
+        CHECK(placement.statistics.mean_spacing / placement.statistics.mean_spacing_ratio <= most);
+      }
+    }
+  }
+}
+
+TEST_CASE("exact placement: more lines where the separation distance is less") {
+  const auto mesh = jittered_grid(20, 10).mesh();
+  auto options = with(1);
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t) {
+    options.separation_distances.push_back(centre(mesh, t).x() < 10 ? 0.5 : 2);
+  }
+  const auto placement = checked(mesh, constant_field(mesh, Vector(0.02, 1, 0)), options);
+  double left = 0, right = 0;
+  for (const auto& piece : segments_of(placement)) (piece.start.x() < 10 ? left : right) += piece.length();
+  CHECK(left > 2.5 * right);
+}
+
+TEST_CASE("exact placement: parallel lines lie as close as they may") {
+  const auto spacing = [](const Soup& soup, const Vector& direction, double separation) {
+    const auto mesh = soup.mesh();
+    const auto placement = checked(mesh, constant_field(mesh, direction), with(separation));
+    check_segment_separation(placement, separation);
+    return placement.statistics.mean_spacing_ratio;
+  };
+  // Separation distances of which a whole number, and little more, fits across.
+  for (const double separation : {40 / 28.05, 40 / 40.05, 40 / 90.05}) {
+    CHECK(spacing(grid(60, 40), Vector(1, 0, 0), separation) <= 1.005);
+    CHECK(spacing(jittered_grid(60, 40), Vector(1, 0, 0), separation) <= 1.005);
+  }
+  for (const double separation : {60 / 41.05, 60 / 100.05}) {
+    CHECK(spacing(grid(60, 40), Vector(0, 1, 0), separation) <= 1.005);
+    CHECK(spacing(jittered_grid(60, 40), Vector(0, 1, 0), separation) <= 1.005);
+  }
+}
+
+TEST_CASE("exact placement: oblique parallel lines are d_sep apart and whole") {
+  const auto mesh = jittered_grid(60, 40).mesh();
+  for (const double angle : {0.4, 1.1, 2.3}) {
+    const auto placement = checked(mesh, constant_field(mesh, Vector(std::cos(angle), std::sin(angle), 0)), with(1));
+    CHECK(placement.statistics.mean_spacing_ratio < 1.02);  // of which a line short of a corner is a part
+    CHECK(stop_count(placement, StopReason::boundary) == 2 * placement.statistics.streamline_count);
+  }
+}
+
+TEST_CASE("exact placement: each stop reason is met and right") {
+  const auto mesh = jittered_grid(12, 9).mesh();
+  const auto place = [&](const char* name, double separation, std::int64_t max_steps = 1000) {
+    const auto hard = std::find_if(std::begin(hard_fields), std::end(hard_fields),
+                                   [&](const auto& one) { return std::string(one.name) == name; });
+    auto options = with(separation);
+    options.max_steps = max_steps;
+    return checked(mesh, make_field(mesh, *hard), options);
+  };
+  CHECK(stop_count(place("sink", 0.3), StopReason::boundary) > 0);
+  CHECK(stop_count(place("sink", 0.3), StopReason::near_other) > 0);
+  CHECK(stop_count(place("convergent edges", 0.3), StopReason::abrupt_turn) > 0);
+  CHECK(stop_count(place("patches of zero", 0.3), StopReason::no_field) > 0);
+  CHECK(stop_count(place("vortex", 0.3), StopReason::near_itself) > 0);
+  const auto cut_short = place("sink", 0.3, 2);
+  CHECK(stop_count(cut_short, StopReason::max_steps) > 0);
+  for (std::size_t i = 0; i < cut_short.lengths.size(); ++i) {
+    CHECK(cut_short.offsets[i + 1] - cut_short.offsets[i] <= 2 * 2 + 2);
+  }
+}
+
+TEST_CASE("exact placement: a line ends at others only where they are near") {
+  const auto mesh = jittered_grid(12, 9).mesh();
+  for (const auto& hard : hard_fields) {
+    CAPTURE(hard.name);
+    const auto placement = checked(mesh, make_field(mesh, hard), with(0.4));
+    const auto lines = polylines(placement);
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      for (const int end : {0, 1}) {
+        if (placement.stop_reasons[i][end] != StopReason::near_other) continue;
+        // The next chord, which is at most as long as the longest edge, would be too near.
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t j = 0; j < i; ++j) {
+          least = std::min(least, distance_to_polyline(end == 0 ? lines[i].front() : lines[i].back(), lines[j]));
+        }
+        CHECK(least < 0.4 + 2.5);
+      }
+    }
+  }
+}
+
+}  // namespace pectinate::test
