@@ -24,6 +24,8 @@ using Clock = std::chrono::steady_clock;
 using WorkspacePointer = decltype(StreamlineTracer::make_workspace());
 
 constexpr auto progress_interval = std::chrono::milliseconds(50);
+/// A callback that takes long, on a large surface, is called more seldom: at most this share of the time is its.
+constexpr int slowest_share = 20;
 /// More would only take memory and keep the callback waiting.
 constexpr int most_seeds = 1'000'000;
 /// Candidates that a thread traces between two looks at the clock.
@@ -71,15 +73,18 @@ class Progress {
   /// `coverage` is a function: counting may take a while.
   template <class Coverage>
   bool is_cancelled(const Coverage& coverage) {
-    if (!callback_ || cancelled_ || Clock::now() - last_call_ < progress_interval) return cancelled_;
+    if (!callback_ || cancelled_ || Clock::now() - last_call_ < interval_) return cancelled_;
+    const auto start = Clock::now();
     cancelled_ = !callback_(coverage());
     last_call_ = Clock::now();
+    interval_ = std::max<Clock::duration>(progress_interval, slowest_share * (last_call_ - start));
     return cancelled_;
   }
 
  private:
   const std::function<bool(double)>& callback_;
   Clock::time_point last_call_{};
+  Clock::duration interval_ = progress_interval;
   bool cancelled_ = false;
 };
 

@@ -19,7 +19,7 @@ enum class PlacementMethod : std::uint8_t {
   random,        ///< seeds anywhere outside the occupied region
   neighborhood,  ///< seeds beside the occupied region: between d_sep and d_sep plus an edge length from a streamline
   distance,      ///< seeds at `seed_distance_factor` d_sep from a placed streamline
-  longest,       ///< always the longest that still fits, among all; needs exact occupancy, draws nothing at random
+  longest,  ///< always the longest that still fits, of a dense pool of candidates; exact occupancy, no random seeds
 };
 
 /// How it is known what is within d_sep of a streamline.

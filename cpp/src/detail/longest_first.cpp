@@ -73,10 +73,9 @@ class LongestFirst {
 
   bool run(const std::function<bool()>& go_on) {
     chords_.reserve(usual_chords * crossings_.size());
-    fill_pool();
-    if (!empty_heap(go_on)) return false;
+    if (!fill_pool(go_on) || !empty_heap(go_on)) return false;
     // Where all gaps together gave no streamline, they never will.
-    for (std::int64_t before = -1; before != placed_count_ && push_gaps();) {
+    for (std::int64_t before = -1; before != placed_count_ && push_gaps(go_on);) {
       before = placed_count_;
       if (!empty_heap(go_on)) return false;
     }
@@ -148,30 +147,36 @@ class LongestFirst {
     }
   }
 
-  /// Trajectories so close that none of the longest streamlines is far from one: each triangle is crossed by one, or
-  /// a few triangles away from one.
-  void fill_pool() {
+  /// Trajectories so close that the longest streamlines are never far from one: each triangle is crossed by one, or a
+  /// few triangles away from one. False if it was stopped.
+  bool fill_pool(const std::function<bool()>& go_on) {
     double edge = 0;
     for (const double length : mesh_.edge_lengths()) edge += length;
     edge /= static_cast<double>(mesh_.edge_lengths().size());
     std::vector<bool> served(crossings_.size(), false);
-    std::vector<std::int32_t> front, next;
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(crossings_.size()); ++t) {
       if (served[t] || occupancy_.stopped().is_full(t)) continue;
+      if (!go_on()) return false;
       const auto stretch = add_trajectory(t, 0.5, false, 1).stretch;
-      front.clear();
-      for (auto i = stretch.first; i < stretch.last; ++i) front.push_back(chords_[i].triangle());
-      for (const auto u : front) served[u] = true;
       const int rings = std::clamp(static_cast<int>(tracer_.separation_distance(t) / (2 * edge)), 1, most_rings);
-      for (int ring = 0; ring < rings; ++ring, front.swap(next)) {
-        next.clear();
-        for (const auto u : front) {
-          for (int side = 0; side < 3; ++side) {
-            const auto v = mesh_.neighbour(u, side).triangle;
-            if (v < 0 || served[v]) continue;
-            served[v] = true;
-            next.push_back(v);
-          }
+      serve(stretch, rings, served);
+    }
+    return true;
+  }
+
+  /// Marks the triangles of a stretch and those up to `rings` triangles away.
+  void serve(const Stretch& stretch, int rings, std::vector<bool>& served) const {
+    std::vector<std::int32_t> front, next;
+    for (auto i = stretch.first; i < stretch.last; ++i) front.push_back(chords_[i].triangle());
+    for (const auto t : front) served[t] = true;
+    for (int ring = 0; ring < rings; ++ring, front.swap(next)) {
+      next.clear();
+      for (const auto t : front) {
+        for (int side = 0; side < 3; ++side) {
+          const auto other = mesh_.neighbour(t, side).triangle;
+          if (other < 0 || served[other]) continue;
+          served[other] = true;
+          next.push_back(other);
         }
       }
     }
@@ -195,12 +200,13 @@ class LongestFirst {
     }
   }
 
-  /// A candidate through every gap that is left; false if none is.
-  bool push_gaps() {
+  /// A candidate through every gap that is left; false if none is, or if it was stopped.
+  bool push_gaps(const std::function<bool()>& go_on) {
     bool any = false;
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(crossings_.size()); ++t) {
       for (const auto& gap : occupancy_.unseeded().gaps(t)) {
         if (gap.high - gap.low < least_gap) continue;
+        if (!go_on()) return true;  // the heap says so too
         if (length(add_trajectory(t, (gap.low + gap.high) / 2, true, 1).stretch) < minimum_length_) {
           occupancy_.retire_seed(t, gap);
         } else {
@@ -320,13 +326,16 @@ class LongestFirst {
     return point_on(chord, chord.leaves_through_low_high() ? short_side(chord) : low_high);
   }
 
+  /// The streamline of the stretch whose polyline is at hand.
   Streamline make_streamline(const Stretch& stretch, std::int32_t trajectory) const {
     Streamline line;
     line.points.push_back(entry_point(chords_[stretch.first]));
     for (auto i = stretch.first; i < stretch.last; ++i) {
       line.points.push_back(exit_point(chords_[i]));
       line.triangles.push_back(chords_[i].triangle());
-      line.length += chord_length(crossings_[chords_[i].triangle()], chords_[i].coordinate);
+    }
+    for (std::size_t i = 1; i < polyline_.points.size(); ++i) {
+      line.length += (polyline_.points[i] - polyline_.points[i - 1]).norm();
     }
     line.seed_index = std::ssize(line.points) / 2;
     const auto& whole = trajectories_[trajectory];
