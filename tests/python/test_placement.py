@@ -453,6 +453,7 @@ def test_what_progress_raises_comes_through(kind: type[BaseException], thread_co
 def test_ctrl_c_is_heard_within_a_second(progress: Callable[[float], bool] | None, way: dict[str, Any]) -> None:
     model = model_of(sphere(6, radius=20))
     sent: list[float] = []
+    previous = signal.signal(signal.SIGINT, signal.default_int_handler)  # processes in the background ignore it
 
     def interrupt() -> None:
         sent.append(time.monotonic())
@@ -465,6 +466,7 @@ def test_ctrl_c_is_heard_within_a_second(progress: Callable[[float], bool] | Non
             place_streamlines(model, separation_distance=0.05, seed_count=5000, progress=progress, **way)
     finally:
         timer.cancel()
+        signal.signal(signal.SIGINT, previous)
     assert time.monotonic() - sent[0] < 1
 
 

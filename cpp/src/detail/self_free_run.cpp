@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <optional>
+#include <utility>
 
 #include "detail/segment_distance.hpp"
 
@@ -21,12 +23,10 @@ class SegmentGrid {
 
   /// Calls visit(segment) for all segments in the cells around that of one.
   template <class Visit>
-  void visit_around(std::size_t segment, const Visit& visit) const {
-    const auto [x, y, z] = cell_of(segment);
-    for (std::int64_t i = 0; i < 9; ++i) {
-      const auto first = key({x + i % 3 - 1, y + i / 3 - 1, z - 1});
-      auto entry = std::lower_bound(entries_.begin(), entries_.end(), Entry{first, 0});
-      for (; entry != entries_.end() && entry->key <= first + 2; ++entry) visit(entry->segment);
+  void visit_around(std::size_t segment, const Visit& visit) {
+    find_rows(cell_of(segment));
+    for (const auto& [first, last] : rows_) {
+      for (auto entry = first; entry != last; ++entry) visit(entry->segment);
     }
   }
 
@@ -51,9 +51,24 @@ class SegmentGrid {
     return {index(middle.x()), index(middle.y()), index(middle.z())};
   }
 
+  /// Looks up the three by three rows of cells around one; neighbours along the line mostly share them.
+  void find_rows(const Cell& cell) {
+    if (rows_cell_ == cell) return;
+    rows_cell_ = cell;
+    for (std::int64_t i = 0; i < 9; ++i) {
+      const auto first = key({cell[0] + i % 3 - 1, cell[1] + i / 3 - 1, cell[2] - 1});
+      const auto start = std::lower_bound(entries_.begin(), entries_.end(), Entry{first, 0});
+      auto end = start;
+      while (end != entries_.end() && end->key <= first + 2) ++end;
+      rows_[i] = {start, end};
+    }
+  }
+
   const std::vector<Vector>& points_;
   double cell_size_;
   std::vector<Entry> entries_;
+  std::optional<Cell> rows_cell_;
+  std::array<std::pair<std::vector<Entry>::const_iterator, std::vector<Entry>::const_iterator>, 9> rows_;
 };
 
 }  // namespace
@@ -69,7 +84,7 @@ SegmentRun longest_self_free_run(const std::vector<Vector>& points, double dista
   }
   if (arc.back() <= arc_gap) return {0, count};
 
-  const SegmentGrid grid(points, distance + longest);
+  SegmentGrid grid(points, distance + longest);
   SegmentRun best{0, 0};
   // Two pointers: the run that ends with segment `last` cannot begin before `first`.
   std::size_t first = 0;
