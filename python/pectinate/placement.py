@@ -63,9 +63,9 @@ def place_streamlines(
         d_sep, mm: streamlines come no closer. An array, (T,) or (V,) per triangle or vertex of the source, asks for
         that distance from streamlines that lie there.
     method : str
-        "longest": always the longest streamline that still fits, of a dense pool. The paper's methods keep the longest of `seed_count`
-        candidates, which start at random: "random" anywhere free, "neighborhood" just beside placed streamlines,
-        "distance" at `seed_distance_factor` d_sep from them.
+        "longest": always the longest streamline that still fits, of a dense pool. The paper's methods keep the longest
+        of `seed_count` candidates, which start at random: "random" anywhere free, "neighborhood" just beside placed
+        streamlines, "distance" at `seed_distance_factor` d_sep from them.
     occupancy : str
         "exact", or "edge_mask", the paper's: exact where streamlines cross edges only. Not for method "longest".
     seed_count : int

@@ -230,7 +230,9 @@ def test_progress_bar_draws_seldom():
 
 def test_interrupt_ends_at_once_with_its_code(tmp_path):
     controller, terminal = pty.openpty()
-    program = "import sys; from pectinate.cli import main; sys.exit(main())"
+    # Processes in the background ignore the signal unless told otherwise.
+    heed = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
+    program = f"{heed}; import sys; from pectinate.cli import main; sys.exit(main())"
     words = ["demo", "--out", str(tmp_path), "--edge-length", "0.5", "--separation", "0.1", "--json"]
     process = subprocess.Popen([sys.executable, "-c", program, *words], stdout=subprocess.PIPE, stderr=terminal)
     os.close(terminal)
