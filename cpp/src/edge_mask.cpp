@@ -6,8 +6,7 @@
 
 #include "detail/edge_point.hpp"
 #include "detail/edge_search.hpp"
-#include "detail/random.hpp"
-#include "detail/weighted_set.hpp"
+#include "detail/seed_regions.hpp"
 #include "pectinate/occupancy.hpp"
 
 namespace pectinate {
@@ -68,8 +67,7 @@ class EdgeMask final : public Occupancy {
         weights_(whole_weights(mesh, start_triangles_)),
         occupied_(weights_.size(), 0),
         retired_(weights_.size(), 0),
-        partly_free_(weights_.size()),
-        wholly_free_(weights_.size()) {
+        free_(weights_.size()) {
     for (std::size_t e = 0; e < weights_.size(); ++e) {
       total_weight_ += bit_count * weights_[e];
       update(static_cast<std::int32_t>(e));
@@ -101,12 +99,9 @@ class EdgeMask final : public Occupancy {
   }
 
   std::optional<Seed> draw_seed(SeedRegion region, Random& random) const override {
-    const std::uint64_t partly = region == SeedRegion::wholly_free ? 0 : partly_free_.total();
-    const std::uint64_t wholly = region == SeedRegion::partly_free ? 0 : wholly_free_.total();
-    if (partly + wholly == 0) return std::nullopt;
-    const std::uint64_t offset = random.below(partly + wholly);
-    const auto edge =
-        static_cast<std::int32_t>(offset < partly ? partly_free_.find(offset) : wholly_free_.find(offset - partly));
+    const auto drawn = free_.draw(region, random);
+    if (!drawn) return std::nullopt;
+    const auto edge = *drawn;
     const std::uint64_t bits = free_bits(edge);
     const int bit = nth_set_bit(bits, random.below(static_cast<std::uint64_t>(std::popcount(bits))));
     return Seed{{edge, detail::clamp_position((bit + random.unit()) / bit_count)}, start_triangles_[edge]};
@@ -129,9 +124,7 @@ class EdgeMask final : public Occupancy {
 
   void update(std::int32_t edge) {
     const std::uint64_t free_weight = static_cast<std::uint64_t>(std::popcount(free_bits(edge))) * weights_[edge];
-    const bool untouched = occupied_[edge] == 0;
-    partly_free_.set(edge, untouched ? 0 : free_weight);
-    wholly_free_.set(edge, untouched ? free_weight : 0);
+    free_.set(edge, free_weight, occupied_[edge] == 0);
   }
 
   const StreamlineTracer& tracer_;
@@ -139,7 +132,7 @@ class EdgeMask final : public Occupancy {
   std::vector<std::int32_t> start_triangles_;  // per edge
   std::vector<std::uint64_t> weights_;         // per sub-segment of each edge; 0 where no streamline can start
   std::vector<std::uint64_t> occupied_, retired_;
-  detail::WeightedSet partly_free_, wholly_free_;
+  detail::SeedRegions free_;
   std::uint64_t total_weight_ = 0, occupied_weight_ = 0;
 };
 

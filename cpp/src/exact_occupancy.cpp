@@ -6,8 +6,7 @@
 #include "detail/chord_occupancy.hpp"
 #include "detail/crossings.hpp"
 #include "detail/edge_point.hpp"
-#include "detail/random.hpp"
-#include "detail/weighted_set.hpp"
+#include "detail/seed_regions.hpp"
 #include "pectinate/occupancy.hpp"
 
 namespace pectinate {
@@ -22,11 +21,7 @@ constexpr double retired_half_width = 1.0 / 128;
 class ExactOccupancy final : public Occupancy {
  public:
   ExactOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const Clearance& clearance)
-      : mesh_(mesh),
-        tracer_(tracer),
-        occupancy_(mesh, tracer, clearance),
-        partly_free_(mesh.triangle_count()),
-        wholly_free_(mesh.triangle_count()) {
+      : mesh_(mesh), tracer_(tracer), occupancy_(mesh, tracer, clearance), free_(mesh.triangle_count()) {
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t) update(t);
   }
 
@@ -55,13 +50,9 @@ class ExactOccupancy final : public Occupancy {
   }
 
   std::optional<Seed> draw_seed(SeedRegion region, Random& random) const override {
-    const std::uint64_t partly = region == SeedRegion::wholly_free ? 0 : partly_free_.total();
-    const std::uint64_t wholly = region == SeedRegion::partly_free ? 0 : wholly_free_.total();
-    if (partly + wholly == 0) return std::nullopt;
-    const std::uint64_t offset = random.below(partly + wholly);
-    const auto triangle =
-        static_cast<std::int32_t>(offset < partly ? partly_free_.find(offset) : wholly_free_.find(offset - partly));
-    return seed_on(triangle, draw_chord(triangle, random));
+    const auto triangle = free_.draw(region, random);
+    if (!triangle) return std::nullopt;
+    return seed_on(*triangle, draw_chord(*triangle, random));
   }
 
   double coverage() const override { return occupancy_.coverage(); }
@@ -95,15 +86,13 @@ class ExactOccupancy final : public Occupancy {
     const double free_area = occupancy_.free_share(triangle) * mesh_.triangle_areas()[triangle];
     const bool full = occupancy_.unseeded().is_full(triangle);
     const auto weight = full ? 0 : std::max<std::uint64_t>(1, std::llround(free_area * scale));
-    const bool untouched = occupancy_.unseeded().is_empty(triangle);
-    partly_free_.set(triangle, untouched ? 0 : weight);
-    wholly_free_.set(triangle, untouched ? weight : 0);
+    free_.set(triangle, weight, occupancy_.unseeded().is_empty(triangle));
   }
 
   const SurfaceMesh& mesh_;
   const StreamlineTracer& tracer_;
   detail::ChordOccupancy occupancy_;
-  detail::WeightedSet partly_free_, wholly_free_;
+  detail::SeedRegions free_;
 };
 
 }  // namespace
