@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
+
+#include "detail/buckets.hpp"
 
 namespace pectinate::detail {
 namespace {
@@ -31,7 +34,8 @@ struct Side {
   std::int8_t side;
 };
 
-std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
+/// By their ends, then by triangle.
+std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles, std::size_t vertex_count) {
   std::vector<Side> sides;
   sides.reserve(3 * triangles.size());
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles.size()); ++t) {
@@ -40,9 +44,14 @@ std::vector<Side> sorted_sides(const std::vector<Triangle>& triangles) {
       sides.push_back({{low, high}, t, k});
     }
   }
-  std::sort(sides.begin(), sides.end(),
-            [](const Side& a, const Side& b) { return a.ends != b.ends ? a.ends < b.ends : a.triangle < b.triangle; });
-  return sides;
+  Buckets<Side> by_low_end(sides, vertex_count, [](const Side& side) { return side.ends[0]; });
+  for (std::size_t v = 0; v < by_low_end.count(); ++v) {
+    const auto bucket = by_low_end.bucket(v);
+    std::sort(bucket.begin(), bucket.end(), [](const Side& a, const Side& b) {
+      return a.ends[1] != b.ends[1] ? a.ends[1] < b.ends[1] : a.triangle < b.triangle;
+    });
+  }
+  return std::move(by_low_end).take();
 }
 
 void join_sides(std::vector<std::array<SideNeighbour, 3>>& neighbours, const Side& a, const Side& b) {
@@ -99,7 +108,7 @@ void rejoin_slits(const std::vector<Triangle>& triangles, const std::vector<Side
 
 Topology make_topology(const TriangleSoup& soup) {
   const auto& triangles = soup.triangles;
-  const auto sides = sorted_sides(triangles);
+  const auto sides = sorted_sides(triangles, soup.vertices.size());
   Topology topology;
   topology.triangle_edges.resize(triangles.size());
   topology.neighbours.resize(triangles.size());

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <string>
 
+#include "detail/buckets.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/errors.hpp"
 
@@ -50,20 +50,28 @@ bool is_degenerate(const Triangle& t, std::span<const Vec3> vertices) {
 }
 
 /// Of triangles with the same three corners, all but the first.
-std::vector<std::int32_t> find_repetitions(std::span<const Triangle> triangles,
+std::vector<std::int32_t> find_repetitions(std::span<const Triangle> triangles, std::size_t vertex_count,
                                            const std::vector<std::int32_t>& candidates) {
-  std::vector<Triangle> keys;
-  keys.reserve(candidates.size());
+  struct Corners {
+    Triangle sorted;
+    std::int32_t triangle;
+  };
+  std::vector<Corners> all;
+  all.reserve(candidates.size());
   for (const auto t : candidates) {
-    keys.push_back(triangles[t]);
-    std::sort(keys.back().begin(), keys.back().end());
+    all.push_back({triangles[t], t});
+    std::sort(all.back().sorted.begin(), all.back().sorted.end());
   }
-  std::vector<std::int32_t> order(candidates.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](auto i, auto j) { return keys[i] < keys[j]; });
   std::vector<std::int32_t> repeated;
-  for (std::size_t i = 1; i < order.size(); ++i) {
-    if (keys[order[i]] == keys[order[i - 1]]) repeated.push_back(candidates[order[i]]);
+  Buckets<Corners> by_least(all, vertex_count, [](const Corners& corners) { return corners.sorted[0]; });
+  for (std::size_t v = 0; v < by_least.count(); ++v) {
+    const auto bucket = by_least.bucket(v);
+    std::sort(bucket.begin(), bucket.end(), [](const Corners& a, const Corners& b) {
+      return a.sorted != b.sorted ? a.sorted < b.sorted : a.triangle < b.triangle;
+    });
+    for (std::size_t i = 1; i < bucket.size(); ++i) {
+      if (bucket[i].sorted == bucket[i - 1].sorted) repeated.push_back(bucket[i].triangle);
+    }
   }
   std::sort(repeated.begin(), repeated.end());
   return repeated;
@@ -84,7 +92,7 @@ std::vector<std::int32_t> select_triangles(std::span<const Vec3> vertices, std::
       valid.push_back(t);
     }
   }
-  repairs.duplicate_triangles = find_repetitions(triangles, valid);
+  repairs.duplicate_triangles = find_repetitions(triangles, vertices.size(), valid);
   std::vector<std::int32_t> kept;
   kept.reserve(valid.size());
   std::set_difference(valid.begin(), valid.end(), repairs.duplicate_triangles.begin(),
