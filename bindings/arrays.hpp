@@ -53,7 +53,7 @@ py::array read_only_view(const std::array<py::ssize_t, Rank>& shape, const T* da
   using Number = typename NumberOf<T>::type;
   py::array_t<Number> result(shape, reinterpret_cast<const Number*>(data), owner);
   result.attr("setflags")(py::arg("write") = false);
-  return result;
+  return result.attr("view")();  // whose flag cannot be set again, because its base is not writable
 }
 
 /// A read-only view of a vector that `owner` keeps alive.

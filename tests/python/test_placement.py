@@ -505,6 +505,8 @@ def test_arrays_are_read_only_and_outlive_what_they_come_from() -> None:
     for array, copy in zip(arrays, copies, strict=True):
         np.testing.assert_array_equal(array, copy)
         assert not array.flags.writeable
+        with pytest.raises(ValueError, match="WRITEABLE"):
+            array.setflags(write=True)
         with pytest.raises(ValueError, match="read-only"):
             array[...] = 0
     assert len(filler) == 1000
