@@ -5,6 +5,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -117,6 +118,28 @@ TEST_CASE("the directions are unit and tangent, parallel to the openings, and sm
   CHECK(turns[turns.size() / 2] < 3);
   CHECK(turns[turns.size() * 99 / 100] < 15);
   CHECK(sine_sum / border_sides < std::sin(10 * std::numbers::pi / 180));
+}
+
+TEST_CASE("consecutive vertices of the loops are the open sides of the surface, which lies on their left") {
+  for (const double edge_length : {4.0, 0.7}) {  // remeshed only, and subdivided
+    const auto atrium = make_demo_atrium({edge_length});
+    const SurfaceMesh mesh(atrium.vertices, atrium.triangles);
+    std::vector<std::array<std::int32_t, 2>> open_sides, loop_sides;
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t) {
+      const auto& corners = atrium.triangles[t];
+      for (int k = 0; k < 3; ++k) {
+        if (mesh.neighbour(t, k).triangle < 0) open_sides.push_back({corners[k], corners[(k + 1) % 3]});
+      }
+    }
+    for (const auto& [name, vertices] : atrium.loops) {
+      for (std::size_t i = 0; i < vertices.size(); ++i) {
+        loop_sides.push_back({vertices[i], vertices[(i + 1) % vertices.size()]});
+      }
+    }
+    std::sort(open_sides.begin(), open_sides.end());
+    std::sort(loop_sides.begin(), loop_sides.end());
+    CHECK(loop_sides == open_sides);
+  }
 }
 
 TEST_CASE("every region is there and every triangle is in one") {

@@ -14,13 +14,14 @@ struct DemoAtriumOptions {
   double edge_length = 1.0;
 };
 
-/// A closed border of the generated surface: `vertices` in order along it, no repetition.
+/// A closed border of the generated surface: `vertices` in order along it, the surface on their left, no repetition.
 struct NamedLoop {
   std::string name;
   std::vector<std::int32_t> vertices;
 };
 
-/// An atrium-like surface with a smooth orientation field, in millimetres.
+/// An atrium-like surface with a smooth orientation field, in millimetres; x to the patient's left, y to posterior,
+/// z to superior.
 struct DemoAtrium {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;        ///< counter-clockwise seen from outside

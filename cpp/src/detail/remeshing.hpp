@@ -18,7 +18,7 @@ struct CutTriangles {
 
 /// Cuts the closed triangulation and remeshes it until edges are near `edge_length` and triangles nearly equilateral
 /// (Botsch and Kobbelt 2004). Every vertex ends on the surface, every border vertex on its cut's plane as well.
-/// Throws SolverFailure where a cut leaves no single loop.
+/// Throws SolverFailure where a cut leaves no border.
 CutTriangles remesh(const IndexedTriangles& closed, const ImplicitSurface& surface, double edge_length);
 
 /// One triangle becomes four; the new vertices are put on the surface and its borders.
