@@ -182,6 +182,8 @@ def test_what_cannot_be_drawn_is_refused() -> None:
         render_view(sphere(), axes="XYZ")
     with pytest.raises(InvalidOption):
         render_view(sphere(), size=(0, 10))
+    with pytest.raises(InvalidOption, match="supersampling"):
+        render_view(sphere(), supersampling=2.0)  # type: ignore[arg-type]
     with pytest.raises(InvalidOption):
         draw_sheet(sphere(), views=[])
     with pytest.raises(InvalidOption):
@@ -190,13 +192,19 @@ def test_what_cannot_be_drawn_is_refused() -> None:
         View("none", (0, 0, 0), (0, 0, 1))
 
 
-def test_without_opengl_the_error_names_the_packages(monkeypatch: pytest.MonkeyPatch) -> None:
-    def nothing(soname: str, name: str) -> None:
-        raise OSError(f"{soname} ({name}) is not here")
+@pytest.mark.parametrize("missing", [("libGL.so.1",), ("libEGL.so.1", "libOSMesa.so.8")])
+def test_without_opengl_the_error_names_the_packages(monkeypatch: pytest.MonkeyPatch, missing: tuple[str, ...]) -> None:
+    load = context._load
 
-    monkeypatch.setattr(context, "_load", nothing)
+    def load_unless_missing(soname: str, name: str) -> object:
+        if soname in missing:
+            raise OSError(f"{soname} ({name}) is not here")
+        return load(soname, name)
+
+    monkeypatch.setattr(context, "_load", load_unless_missing)
     monkeypatch.setattr(context, "_candidates", lambda: ("egl", "osmesa"))
-    with pytest.raises(RenderingUnavailable, match=r"apt-get install .*libegl1"), offscreen_context():
+    message = rf"{missing[-1]} .*apt-get install .*libegl1"
+    with pytest.raises(RenderingUnavailable, match=message), offscreen_context():
         pass
 
 

@@ -17,7 +17,7 @@ from types import MappingProxyType
 
 from pectinate.errors import RenderingUnavailable
 
-_REMEDY = "on Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri (or libosmesa6 where EGL cannot be had)"
+_REMEDY = "on Debian: apt-get install libegl1 libgl1 libgl1-mesa-dri (or libosmesa6 libgl1 where EGL cannot be had)"
 _VARIABLE = "PYOPENGL_PLATFORM"
 
 _EGL_PLATFORM_DEVICE, _EGL_PLATFORM_SURFACELESS = 0x313F, 0x31DD
@@ -68,6 +68,11 @@ def _mend_pyopengl() -> None:
 
 
 def _open() -> tuple[str, Close]:
+    try:
+        # pyrender imports pyglet, which needs this library on either platform, though it opens no window.
+        _load("libGL.so.1", "GL")
+    except (OSError, RenderingUnavailable) as error:
+        raise RenderingUnavailable(f"no OpenGL library ({error}); {_REMEDY}") from error
     failures = []
     for platform in _candidates():
         try:

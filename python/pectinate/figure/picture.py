@@ -165,5 +165,5 @@ def _check(frame: Frame, supersampling: int) -> None:
     check_size(frame.size)
     if not np.isfinite(frame.mm_per_pixel) or frame.mm_per_pixel <= 0:
         raise InvalidOption(f"mm_per_pixel {frame.mm_per_pixel}: give a number above 0")
-    if supersampling not in range(1, _LARGEST_SUPERSAMPLING + 1):
+    if not isinstance(supersampling, int) or not 1 <= supersampling <= _LARGEST_SUPERSAMPLING:
         raise InvalidOption(f"supersampling {supersampling}: give a whole number from 1 to {_LARGEST_SUPERSAMPLING}")
