@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from pectinate import datasets, place_streamlines
 from pectinate.errors import InvalidFile, InvalidMesh, InvalidOption, RenderingUnavailable
-from pectinate.figure import STANDARD_VIEWS, Style, View, context, draw_sheet, principal_views, render_view
+from pectinate.figure import STANDARD_VIEWS, Style, View, context, draw_sheet, principal_views, render_view, sheet
 from pectinate.figure.context import offscreen_context
 
 Arrays = tuple[NDArray[np.float64], NDArray[np.int64]]
@@ -141,14 +141,48 @@ def test_a_sheet_holds_its_views_labels_and_bar() -> None:
     assert np.array_equal(np.asarray(plain)[: SIZE[1], : SIZE[0]], np.asarray(single))
 
 
-def test_the_scale_bar_has_its_length() -> None:
-    kwargs = {"views": "anterior", "size": (400, 400), "labels": False}
-    surface = box((40, 40, 40))
-    without, with_bar = (np.asarray(draw_sheet(surface, scale_bar=bar, **kwargs)).astype(int) for bar in (False, True))
-    changed = np.any(without != with_bar, axis=2)
-    bottom_row = np.nonzero(changed.any(axis=1))[0].max()
-    pixels_per_mm = np.ptp(np.nonzero(covered(without.astype(np.uint8)).any(axis=0))[0] + 1) / 40
-    assert changed[bottom_row].sum() == pytest.approx(10 * pixels_per_mm, abs=3)
+@pytest.mark.parametrize("width", [7.0, 34.0, 50.0, 75.0])
+def test_the_scale_bar_has_its_length_and_keeps_off_the_label(width: float) -> None:
+    size, kwargs = (400, 350), {"views": "posterior", "supersampling": 1}
+    surface = box((width, 1, 0.5 * width))
+    plain, barred = (np.asarray(draw_sheet(surface, scale_bar=bar, size=size, **kwargs)) for bar in (False, True))
+    changed = np.any(plain != barred, axis=2)
+    bar = changed[np.nonzero(changed.any(axis=1))[0].max()]
+    pixels_per_mm = 0.94 * size[0] / width
+    lengths = [round(mm * pixels_per_mm) for mm in (1, 2, 5, 10, 20, 50)]
+    assert np.ptp(np.nonzero(bar)[0]) + 1 == bar.sum()
+    assert bar.sum() == max(length for length in lengths if length <= 0.28 * size[0])
+    assert not (covered(plain[size[1] :]) & changed.any(axis=0)).any()
+
+
+@pytest.mark.parametrize("power", range(-6, 7))
+def test_bars_are_round_and_as_long_as_can_be(power: int) -> None:
+    for longest in (10.0**power, np.nextafter(10.0**power, 0), np.nextafter(10.0**power, np.inf), 4.9 * 10.0**power):
+        length = sheet._round_length(float(longest))
+        assert longest / 2.5 < length * (1 + 1e-12) <= longest * (1 + 1e-11)
+
+
+def test_the_views_of_a_sheet_share_one_scale() -> None:
+    sizes = {"anterior": (30, 20), "left": (10, 20), "superior": (30, 10)}
+    picture = np.asarray(draw_sheet(box((30, 10, 20)), views=list(sizes), size=SIZE, labels=False, scale_bar=False))
+    pixels_per_mm = min(0.94 * SIZE[0] / 30, 0.94 * SIZE[1] / 20)
+    for view, extents in zip(np.split(picture, 3, axis=1), sizes.values(), strict=True):
+        rows, columns = np.nonzero(covered(view))
+        assert np.ptp(columns) + 1 == pytest.approx(extents[0] * pixels_per_mm, abs=2)
+        assert np.ptp(rows) + 1 == pytest.approx(extents[1] * pixels_per_mm, abs=2)
+
+
+@pytest.mark.parametrize("paper", [(1.0, 1.0, 1.0), (0.0, 0.0, 0.0), (0.2, 0.2, 0.3)])
+def test_writing_stands_out_from_the_paper(paper: tuple[float, float, float]) -> None:
+    style = Style(background_color=paper)
+    written = draw_sheet(sphere(), views="left", size=SIZE, title="title", style=style)
+    plain = draw_sheet(sphere(), views="left", size=SIZE, labels=False, scale_bar=False, style=style)
+    top, band = round(1.5 * 0.09 * SIZE[1]), round(0.09 * SIZE[1])
+    assert written.size == (SIZE[0], top + SIZE[1] + band)
+    pixels = np.asarray(written).astype(int)
+    assert np.array_equal(pixels[top : top + SIZE[1] // 2], np.asarray(plain)[: SIZE[1] // 2])
+    for strip in (pixels[:top], pixels[-band:]):
+        assert np.abs(strip - np.round(255 * np.asarray(paper))).min(axis=2).max() > 90
 
 
 def test_principal_views_turn_with_the_shape() -> None:
@@ -184,6 +218,15 @@ def test_what_cannot_be_drawn_is_refused() -> None:
         render_view(sphere(), size=(0, 10))
     with pytest.raises(InvalidOption, match="supersampling"):
         render_view(sphere(), supersampling=2.0)  # type: ignore[arg-type]
+    for option in ({"mm_per_pixel": 0.0}, {"mm_per_pixel": np.nan}, {"supersampling": 0}, {"supersampling": 9}):
+        with pytest.raises(InvalidOption, match=next(iter(option))):
+            render_view(sphere(), **option)
+    with pytest.raises(InvalidMesh, match="whole numbers"):
+        render_view((vertices, triangles.astype(float)))
+    with pytest.raises(InvalidMesh, match="tubes"):
+        render_view(sphere(), (vertices[:1], triangles))
+    with pytest.raises(InvalidOption, match="more than"):
+        render_view(sphere(), size=(200_000, 1), supersampling=1)
     with pytest.raises(InvalidOption):
         draw_sheet(sphere(), views=[])
     with pytest.raises(InvalidOption):
@@ -208,14 +251,32 @@ def test_without_opengl_the_error_names_the_packages(monkeypatch: pytest.MonkeyP
         pass
 
 
+def test_a_vertex_that_no_triangle_uses_may_be_anything() -> None:
+    vertices, triangles = sphere()
+    padded = np.vstack([vertices, [[np.nan] * 3, [1e6] * 3]])
+    assert np.array_equal(render_view((padded, triangles), size=SIZE), render_view((vertices, triangles), size=SIZE))
+
+
+@pytest.mark.parametrize("platform", ["glx", "egl,osmesa"])
+def test_a_platform_with_windows_is_refused_with_its_remedy(monkeypatch: pytest.MonkeyPatch, platform: str) -> None:
+    monkeypatch.delitem(sys.modules, "OpenGL.platform", raising=False)
+    monkeypatch.setenv("PYOPENGL_PLATFORM", platform)
+    with pytest.raises(RenderingUnavailable, match="egl or osmesa"), offscreen_context():
+        pass
+
+
 @pytest.mark.skipif(find_library("OSMesa") is None, reason="libOSMesa is not installed")
-def test_osmesa_draws_as_well() -> None:
+@pytest.mark.parametrize(
+    "wish", [{"PYOPENGL_PLATFORM": "osmesa"}, {"EGL_DEVICE_ID": "none"}], ids=["named", "fallback"]
+)
+def test_osmesa_draws_as_well(wish: dict[str, str]) -> None:
     code = (
-        "import numpy as np; from pectinate.figure import render_view;"
+        "import os; import numpy as np; from pectinate.figure import render_view;"
         "p = render_view((np.array([[0, 0, 0], [1, 0, 0], [0, 0, 1.0]]), np.array([[0, 1, 2]])), size=(50, 50));"
-        "assert (p != 255).any()"
+        "assert (p != 255).any() and os.environ['PYOPENGL_PLATFORM'] == 'osmesa'"
     )
-    environment = os.environ | {"PYOPENGL_PLATFORM": "osmesa"}
+    # Without the platform that this process has settled on.
+    environment = {name: value for name, value in os.environ.items() if name != "PYOPENGL_PLATFORM"} | wish
     subprocess.run([sys.executable, "-c", code], check=True, env=environment, timeout=60)
 
 

@@ -16,12 +16,15 @@ from pectinate.figure.shading import Style
 from pectinate.figure.shape import Triangles, check_drawing
 from pectinate.figure.views import STANDARD_VIEWS, View, resolve_view
 
-_INK = (60, 56, 54)
+# On light paper, on dark paper.
+_DARK_INK, _LIGHT_INK = (60, 56, 54), (230, 228, 224)
 # Of the height of a view: the band for its label, the letters in it.
 _LABEL_BAND, _LETTERS = 0.09, 0.045
 # Scale bars are one of these times a power of ten, at most this share of a view's width.
 _ROUND_NUMBERS = (1, 2, 5)
-_LONGEST_BAR = 0.4
+_LONGEST_BAR = 0.28
+
+_Rgb = tuple[int, int, int]
 
 
 def draw_sheet(  # noqa: PLR0913
@@ -55,7 +58,7 @@ def draw_sheet(  # noqa: PLR0913
     labels : bool
         Whether each view is named below it.
     scale_bar : bool
-        Whether the last view gets a bar of a round number of mm.
+        Whether the lower right corner gets a bar of a round number of mm.
     title : str, optional
         A line above all views.
     supersampling, style
@@ -91,7 +94,7 @@ def draw_sheet(  # noqa: PLR0913
     names = [view.name for view in looking] if labels else None
     sheet = _arrange(pictures, names, columns, title, style)
     if scale_bar:
-        _draw_bar(sheet, scale, size)
+        _draw_bar(sheet, scale, size, _ink(style))
     return sheet
 
 
@@ -113,34 +116,44 @@ def _arrange(
     band = round(_LABEL_BAND * height) if names else 0
     top = round(1.5 * _LABEL_BAND * height) if title else 0
     rows = math.ceil(len(pictures) / columns)
-    paper = tuple(round(255 * channel) for channel in style.background_color)
-    sheet = Image.new("RGB", (columns * width, top + rows * (height + band)), paper)
-    draw = ImageDraw.Draw(sheet)
+    sheet = Image.new("RGB", (columns * width, top + rows * (height + band)), _paper(style))
+    draw, ink = ImageDraw.Draw(sheet), _ink(style)
     for i, picture in enumerate(pictures):
         x, y = i % columns * width, top + i // columns * (height + band)
         sheet.paste(Image.fromarray(picture), (x, y))
         if names:
-            draw.text((x + width / 2, y + height + band / 2), names[i], _INK, _font(_LETTERS * height), anchor="mm")
+            draw.text((x + width / 2, y + height + band / 2), names[i], ink, _font(_LETTERS * height), anchor="mm")
     if title:
-        draw.text((sheet.width / 2, top / 2), title, _INK, _font(1.4 * _LETTERS * height), anchor="mm")
+        draw.text((sheet.width / 2, top / 2), title, ink, _font(1.4 * _LETTERS * height), anchor="mm")
     return sheet
 
 
-def _draw_bar(sheet: Image.Image, mm_per_pixel: float, size: tuple[int, int]) -> None:
+def _draw_bar(sheet: Image.Image, mm_per_pixel: float, size: tuple[int, int], ink: _Rgb) -> None:
     """Draw a bar of a round length in the sheet's lower right corner."""
     length = _round_length(_LONGEST_BAR * size[0] * mm_per_pixel)
-    pixels, margin = length / mm_per_pixel, 0.04 * size[1]
-    right, bottom = sheet.width - margin, sheet.height - margin
+    margin, thickness = round(0.04 * size[1]), max(2, round(0.006 * size[1]))
+    right, bottom, pixels = sheet.width - margin, sheet.height - margin, round(length / mm_per_pixel)
     draw = ImageDraw.Draw(sheet)
-    draw.rectangle((right - pixels, bottom - max(2, 0.006 * size[1]), right, bottom), fill=_INK)
+    # Pillow's rectangles include their last row and column.
+    draw.rectangle((right - pixels, bottom - thickness, right - 1, bottom - 1), fill=ink)
     text = f"{length:g} mm"
-    draw.text((right - pixels / 2, bottom - 0.015 * size[1]), text, _INK, _font(_LETTERS * size[1]), anchor="mb")
+    draw.text((right - pixels / 2, bottom - 0.015 * size[1]), text, ink, _font(_LETTERS * size[1]), anchor="mb")
 
 
 def _round_length(longest: float) -> float:
     """Return the greatest 1, 2 or 5 times a power of ten up to a length."""
     power = 10.0 ** math.floor(math.log10(longest))
-    return max(factor * power for factor in _ROUND_NUMBERS if factor * power <= longest)
+    # One times the power always counts: the logarithm may have rounded a length just below a power of ten up to it.
+    return max(factor * power for factor in _ROUND_NUMBERS if factor == 1 or factor * power <= longest)
+
+
+def _paper(style: Style) -> _Rgb:
+    red, green, blue = (round(255 * channel) for channel in style.background_color)
+    return red, green, blue
+
+
+def _ink(style: Style) -> _Rgb:
+    return _DARK_INK if sum(_paper(style)) > sum(_LIGHT_INK) / 2 else _LIGHT_INK
 
 
 def _font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
