@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pectinate/surface_mesh.hpp"
+
+namespace pectinate {
+
+/// A weight that means: exactly.
+inline constexpr double hard = std::numeric_limits<double>::infinity();
+
+/// A fibre tract as drawn: a polyline in space near the surface (paper section 2.3). Its sense means nothing.
+struct Tract {
+  std::string name;          ///< for messages; may be empty
+  std::vector<Vec3> points;  ///< at least two; the first again at the end closes it
+  /// `hard`, or the factor of |phi - exp(2 i theta)|^2 / 2 in the energy, per triangle crossed: 1 pulls about as much
+  /// as one neighbouring triangle.
+  double weight = hard;
+};
+
+enum class BoundaryRule : std::uint8_t { free, parallel, perpendicular };
+
+/// What fibres do at a boundary loop. Loops without a condition are free (Neumann).
+struct BoundaryCondition {
+  std::int32_t loop;  ///< index into `mesh.boundary_loops()`
+  BoundaryRule rule;
+  double weight = hard;
+};
+
+struct ConstraintOptions {
+  /// A tract point farther than this from the surface is an error; the default is a hundredth of the bounding box's
+  /// diagonal. In the unit of the mesh, positive.
+  std::optional<double> maximum_distance;
+  /// Two demands on one triangle that differ by more, radians in (0, pi/2], are a conflict; below, they are averaged.
+  double conflict_angle = 0.5235987755982988;  // 30 degrees
+};
+
+/// A tract on the surface: consecutive points lie in one triangle, all but the first and last of each run on its edges.
+struct ProjectedTract {
+  std::vector<Vec3> points;
+  std::vector<std::int32_t> triangles;  ///< per segment, the mesh triangle that holds it
+  double greatest_distance;             ///< from the tract's given points to the surface
+};
+
+/// What a triangle's orientation has to be.
+struct TriangleConstraint {
+  std::int32_t triangle;  ///< of the mesh
+  Vec3 direction;         ///< unit, in the triangle's plane; a line without a sign
+  double weight;          ///< `hard` or as in Tract
+  std::int32_t tract;     ///< index of the tract that asks for it, -1 for a boundary condition
+};
+
+/// Two demands on one triangle that contradict each other. The first listed tract prevails; any tract over a boundary.
+struct ConstraintConflict {
+  std::int32_t triangle;
+  std::int32_t kept,
+      dropped;   ///< indices of tracts, -1 for a boundary condition; equal for a tract that crosses itself
+  double angle;  ///< between the two lines, radians
+};
+
+struct Constraints {
+  std::vector<TriangleConstraint> triangles;  ///< at most one a triangle, ascending
+  std::vector<ProjectedTract> tracts;         ///< in the order given
+  std::vector<ConstraintConflict> conflicts;  ///< ascending by triangle
+};
+
+/// The point of the surface nearest to a point of space.
+struct SurfacePoint {
+  std::int32_t triangle;
+  Vec3 point;
+  double distance;
+};
+
+/// For each point the nearest one of the surface; of equally near triangles the first.
+std::vector<SurfacePoint> nearest_surface_points(const SurfaceMesh& mesh, std::span<const Vec3> points);
+
+/// The boundary loop with the point nearest to `point`. Throws InvalidMesh for a closed surface.
+std::int32_t nearest_boundary_loop(const SurfaceMesh& mesh, const Vec3& point);
+
+/// Brings tracts to the surface and collects what they and the boundary ask of each triangle.
+///
+/// A tract's points go to their nearest points; between two of them the curve is where the surface is cut by the plane
+/// through both that is most nearly normal to the surface. Each triangle crossed gets the tangent, length-weighted over
+/// the tract's segments in it. The triangles along a boundary edge get the loop's tangent, smoothed along the loop.
+///
+/// Throws InvalidOption, naming the tract or the condition, for: fewer than two distinct points; a point that is not
+/// finite or too far away; consecutive points on different components, or that no curve on the surface joins; a loop
+/// that does not exist or is given twice; a weight that is not positive; an option out of its range.
+Constraints make_constraints(const SurfaceMesh& mesh, std::span<const Tract> tracts,
+                             std::span<const BoundaryCondition> boundary, const ConstraintOptions& options = {});
+
+}  // namespace pectinate
