@@ -8,7 +8,7 @@ PYTHON ?= python3
 JOBS ?= $(shell nproc)
 BUILD_TYPE ?= Release
 
-APT_PACKAGES := g++ cmake ninja-build libopenmesh-dev libeigen3-dev libcgal-dev doctest-dev \
+APT_PACKAGES := g++ cmake ninja-build libopenmesh-dev libeigen3-dev libcgal-dev libmetis-dev doctest-dev \
   python3-venv python3-dev libgl1 libegl1 libgl1-mesa-dri libosmesa6
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
 

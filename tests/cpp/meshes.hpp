@@ -119,6 +119,19 @@ inline Soup cylinder(int around, int rows, double radius, double height) {
   return soup;
 }
 
+/// A flat ring around the origin, facing +z; loop of radius `outer` first in length.
+inline Soup annulus(int around, int rows, double inner, double outer) {
+  Soup soup;
+  for (int j = 0; j <= rows; ++j) {
+    const double radius = inner + (outer - inner) * j / rows;
+    for (int i = 0; i < around; ++i) {
+      soup.vertices.push_back({radius * std::cos(turn(i, around)), radius * std::sin(turn(i, around)), 0});
+    }
+  }
+  soup.triangles = chart_triangles(around, rows, [=](int i, int j) { return (around - i % around) % around + around * j; });
+  return soup;
+}
+
 /// A strip with half a twist around a circle; vertex i * (rows + 1) + j is `j` rows across it.
 inline Soup moebius_strip(int around, int rows, double radius = 2, double width = 1) {
   Soup soup;

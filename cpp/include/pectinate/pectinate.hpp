@@ -5,6 +5,7 @@
 #include "pectinate/constraints.hpp"
 #include "pectinate/demo_atrium.hpp"
 #include "pectinate/errors.hpp"
+#include "pectinate/field_topology.hpp"
 #include "pectinate/interpolation.hpp"
 #include "pectinate/occupancy.hpp"
 #include "pectinate/orientation_field.hpp"

@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+#include "detail/frontal_cholesky.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <numeric>
+
+#include "detail/elimination_tree.hpp"
+#include "pectinate/errors.hpp"
+
+namespace pectinate::detail {
+namespace {
+
+/// Columns join a front although their patterns differ a little, because dense work is cheap and fronts are not: as long
+/// as the front is small, or has no more than this share of zeros.
+constexpr double tolerated_zeros = 0.2;
+constexpr std::int32_t small_front = 8;
+
+/// Subtrees of fewer columns are done again as a whole, and keep nothing inside.
+constexpr std::int32_t small_subtree = 200;
+
+bool worth_joining(double columns, double height, double needed) {
+  const double stored = columns * (columns + 1) / 2 + columns * height;
+  return columns <= small_front || stored - needed <= tolerated_zeros * stored;
+}
+
+}  // namespace
+
+FrontalCholesky::FrontalCholesky(std::int32_t node_count, std::span<const Edge> edges)
+    : place_(node_count), local_(node_count) {
+  EliminationTree tree = make_elimination_tree(node_count, edges);
+  node_ = std::move(tree.order);
+  for (std::int32_t i = 0; i < node_count; ++i) place_[node_[i]] = i;
+  collect_entries(edges);
+  make_fronts(tree.parent);
+  link_fronts();
+}
+
+void FrontalCholesky::collect_entries(std::span<const Edge> edges) {
+  offsets_.assign(place_.size() + 1, 0);
+  for (const auto& [a, b] : edges) ++offsets_[std::min(place_[a], place_[b]) + 1];
+  std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
+  entries_.resize(edges.size());
+  std::vector<std::int32_t> next(offsets_.begin(), offsets_.end() - 1);
+  for (std::size_t e = 0; e < edges.size(); ++e) {
+    const auto [column, row] = std::minmax(place_[edges[e][0]], place_[edges[e][1]]);
+    entries_[next[column]++] = {row, static_cast<std::int32_t>(e), row == place_[edges[e][0]]};
+  }
+}
+
+std::vector<std::int32_t> FrontalCholesky::rows_below(std::int32_t column, const Columns& below,
+                                                      std::span<const std::int32_t> children) {
+  std::vector<std::int32_t> rows;
+  const auto add = [&](std::int32_t row) {
+    if (row == column || local_[row] == column) return;
+    local_[row] = column;
+    rows.push_back(row);
+  };
+  for (auto e = offsets_[column]; e < offsets_[column + 1]; ++e) add(entries_[e].row);
+  for (const auto child : children) std::ranges::for_each(below[child], add);
+  std::ranges::sort(rows);
+  return rows;
+}
+
+void FrontalCholesky::make_fronts(const std::vector<std::int32_t>& parents) {
+  const auto count = static_cast<std::int32_t>(parents.size());
+  Columns below(count), children(count);
+  front_of_.resize(count);
+  std::ranges::fill(local_, -1);
+  double needed = 0;  // entries of the last front's columns, without the zeros that it stores
+  for (std::int32_t j = 0; j < count; ++j) {
+    below[j] = rows_below(j, below, children[j]);
+    for (const auto child : children[j]) below[child] = {};
+    if (parents[j] >= 0) children[parents[j]].push_back(j);
+    const auto height = static_cast<double>(below[j].size());
+    if (j == 0 || parents[j - 1] != j || !worth_joining(fronts_.back().count + 1, height, needed + height + 1)) {
+      fronts_.emplace_back().first = j;
+      needed = 0;
+    }
+    needed += height + 1;
+    Front& front = fronts_.back();
+    ++front.count;
+    front.parent = parents[j];
+    front.rows = below[j];
+    front_of_[j] = static_cast<std::int32_t>(fronts_.size()) - 1;
+  }
+}
+
+void FrontalCholesky::link_fronts() {
+  std::vector<std::int32_t> subtree(fronts_.size(), 0);
+  for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    Front& front = fronts_[f];
+    subtree[f] += front.count;
+    if (front.parent < 0) continue;
+    front.parent = front_of_[front.parent];
+    Front& parent = fronts_[front.parent];
+    parent.children.push_back(static_cast<std::int32_t>(f));
+    subtree[front.parent] += subtree[f];
+    front.in_parent.reserve(front.rows.size());
+    auto place = parent.rows.begin();
+    for (const auto row : front.rows) {
+      if (row < parent.first + parent.count) {
+        front.in_parent.push_back(row - parent.first);
+        continue;
+      }
+      place = std::lower_bound(place, parent.rows.end(), row);
+      front.in_parent.push_back(parent.count + static_cast<std::int32_t>(place - parent.rows.begin()));
+    }
+  }
+  for (auto& front : fronts_) front.keeps_contribution = front.parent >= 0 && subtree[front.parent] >= small_subtree;
+}
+
+void FrontalCholesky::eliminate(const HermitianMatrix& matrix, const Eigen::VectorXcd& right_hand_side) {
+  for (Front& front : fronts_) {
+    factorize(front, matrix);
+    substitute(front, right_hand_side);
+  }
+}
+
+void FrontalCholesky::eliminate_again(const HermitianMatrix& matrix, const Eigen::VectorXcd& right_hand_side,
+                                      std::span<const std::int32_t> changed_nodes) {
+  const auto selected = fronts_above(changed_nodes);
+  for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    if (!selected[f]) continue;
+    factorize(fronts_[f], matrix);
+    substitute(fronts_[f], right_hand_side);
+  }
+}
+
+void FrontalCholesky::replace(const Eigen::VectorXcd& right_hand_side) {
+  for (Front& front : fronts_) substitute(front, right_hand_side);
+}
+
+std::vector<bool> FrontalCholesky::fronts_above(std::span<const std::int32_t> nodes) const {
+  std::vector<bool> selected(fronts_.size(), false);
+  for (const auto node : nodes) selected[front_of_[place_[node]]] = true;
+  for (std::size_t f = 0; f < fronts_.size(); ++f) {
+    if (selected[f] && fronts_[f].parent >= 0) selected[fronts_[f].parent] = true;
+  }
+  for (std::size_t f = fronts_.size(); f-- > 0;) {
+    const auto parent = fronts_[f].parent;
+    if (parent >= 0 && selected[parent] && !fronts_[f].keeps_contribution) selected[f] = true;
+  }
+  return selected;
+}
+
+void FrontalCholesky::factorize(Front& front, const HermitianMatrix& matrix) {
+  const auto count = static_cast<Eigen::Index>(front.count), below = static_cast<Eigen::Index>(front.rows.size());
+  if (dense_.size() < (count + below) * (count + below)) dense_.resize(count + below, count + below);
+  Eigen::Map<Block> dense(dense_.data(), count + below, count + below);
+  dense.setZero();
+  assemble(front, matrix, dense);
+  auto top = dense.topLeftCorner(count, count);
+  auto left = dense.bottomLeftCorner(below, count);
+  if (Eigen::LLT<Eigen::Ref<Block>> cholesky(top); cholesky.info() != Eigen::Success) {
+    throw SolverFailure("the matrix is not positive definite");
+  }
+  if (below > 0) {
+    top.adjoint().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(left);
+    dense.bottomRightCorner(below, below).selfadjointView<Eigen::Lower>().rankUpdate(left, -1);
+  }
+  front.columns = dense.leftCols(count);
+  front.contribution = dense.bottomRightCorner(below, below);
+  for (const auto child : front.children) {
+    if (!fronts_[child].keeps_contribution) fronts_[child].contribution.resize(0, 0);
+  }
+}
+
+void FrontalCholesky::substitute(Front& front, const Eigen::VectorXcd& right_hand_side) {
+  const auto below = static_cast<Eigen::Index>(front.rows.size());
+  front.reduced.resize(front.count);
+  front.passed_on.setZero(below);
+  for (std::int32_t k = 0; k < front.count; ++k) front.reduced[k] = right_hand_side[node_[front.first + k]];
+  for (const auto c : front.children) {
+    const Front& child = fronts_[c];
+    for (std::size_t k = 0; k < child.in_parent.size(); ++k) {
+      const auto place = child.in_parent[k];
+      (place < front.count ? front.reduced[place] : front.passed_on[place - front.count]) += child.passed_on[k];
+    }
+  }
+  front.columns.topRows(front.count).triangularView<Eigen::Lower>().solveInPlace(front.reduced);
+  front.passed_on.noalias() -= front.columns.bottomRows(below) * front.reduced;
+}
+
+void FrontalCholesky::assemble(const Front& front, const HermitianMatrix& matrix, Eigen::Ref<Block> dense) {
+  const auto count = front.count;
+  for (std::size_t k = 0; k < front.rows.size(); ++k) local_[front.rows[k]] = count + static_cast<std::int32_t>(k);
+  for (std::int32_t k = 0; k < count; ++k) {
+    const std::int32_t column = front.first + k;
+    dense(k, k) = matrix.diagonal[node_[column]];
+    for (auto e = offsets_[column]; e < offsets_[column + 1]; ++e) {
+      const auto& [row, edge, conjugated] = entries_[e];
+      const auto place = row < front.first + count ? row - front.first : local_[row];
+      dense(place, k) = conjugated ? std::conj(matrix.edges[edge]) : matrix.edges[edge];
+    }
+  }
+  for (const auto c : front.children) {
+    const Front& child = fronts_[c];
+    const auto size = static_cast<Eigen::Index>(child.rows.size());
+    for (Eigen::Index j = 0; j < size; ++j) {
+      auto* column = &dense(0, child.in_parent[j]);
+      for (Eigen::Index i = j; i < size; ++i) column[child.in_parent[i]] += child.contribution(i, j);
+    }
+  }
+}
+
+Eigen::VectorXcd FrontalCholesky::solution() const {
+  Eigen::VectorXcd x(place_.size()), above;
+  for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
+    auto own = x.segment(front->first, front->count);
+    above.resize(front->rows.size());
+    for (std::size_t k = 0; k < front->rows.size(); ++k) above[k] = x[front->rows[k]];
+    own = front->reduced;
+    own.noalias() -= front->columns.bottomRows(above.size()).adjoint() * above;
+    front->columns.topRows(front->count).adjoint().triangularView<Eigen::Upper>().solveInPlace(own);
+  }
+  Eigen::VectorXcd of_nodes(x.size());
+  for (Eigen::Index i = 0; i < x.size(); ++i) of_nodes[node_[i]] = x[i];
+  return of_nodes;
+}
+
+}  // namespace pectinate::detail
