@@ -69,8 +69,15 @@ class Turns {
     return std::atan2(u.cross(v).norm(), u.dot(v));
   }
 
-  /// From a triangle to its neighbour, unfolded; radians in (-pi/2, pi/2], to the left seen from the triangle's front.
+  /// From a triangle to its neighbour, unfolded; radians in [-pi/2, pi/2], to the left seen from the triangle's front.
+  /// Of right angles, which could be either, one is taken both ways.
   double turn_across(std::int32_t t, int side, const SideNeighbour& across) const {
+    if (t < across.triangle) return least_turn(t, side, across);
+    const double back = least_turn(across.triangle, across.side, {t, static_cast<std::int8_t>(side)});
+    return is_seam(t, side, across) ? back : -back;
+  }
+
+  double least_turn(std::int32_t t, int side, const SideNeighbour& across) const {
     const Vector edge = corner(t, side + 1) - corner(t, side);
     const auto line = [&](std::int32_t triangle) {
       const auto frame = detail::triangle_frame(mesh_, triangle);

@@ -217,7 +217,9 @@ class FieldInterpolator::State {
       if (confidence[t] > 0) directions[t] = detail::vec3(detail::direction_of(phase[t], frames_[t]));
     }
     for (const auto& given : constraints) {
-      if (std::isinf(given.weight)) directions[given.triangle] = given.direction;
+      if (!std::isinf(given.weight)) continue;
+      directions[given.triangle] = given.direction;
+      confidence[given.triangle] = 1;
     }
     return {detail::field_of_directions(mesh_, directions), std::move(confidence)};
   }

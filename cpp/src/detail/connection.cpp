@@ -8,7 +8,7 @@ namespace pectinate::detail {
 namespace {
 
 /// Edges whose opposite angles add up to nearly pi or more (not Delaunay) would get an infinite or a negative weight.
-constexpr double least_dual_length = 0.1;
+constexpr double least_dual_length = 1e-3;
 
 Vector corner(const SurfaceMesh& mesh, std::int32_t t, int k) {
   return vector(mesh.vertices()[mesh.triangles()[t][k % 3]]);
