@@ -82,6 +82,23 @@ class OrientationField:
     out_of_plane_angles: _Floats
     def count(self, status: DirectionStatus) -> int: ...
 
+class Interpolation:
+    field: OrientationField
+    confidence: _Floats
+
+class FieldInterpolator:
+    def __init__(self, mesh: SurfaceMesh, frame: ReferenceFrame | None = None) -> None: ...
+    def interpolate(self, constraints: Constraints) -> Interpolation: ...
+
+class Singularity:
+    vertex: int
+    half_turns: int
+    position: list[float]
+
+class FieldTopology:
+    singularities: list[Singularity]
+    loop_half_turns: list[int | None]
+
 class PlacementMethod(Enum):
     random = 0
     neighborhood = 1
@@ -161,6 +178,8 @@ class DemoAtrium:
     region_names: list[str]
     loops: list[NamedLoop]
 
+def field_topology(mesh: SurfaceMesh, field: OrientationField) -> FieldTopology: ...
+def dirichlet_energy(mesh: SurfaceMesh, field: OrientationField) -> float: ...
 def place_streamlines(
     mesh: SurfaceMesh,
     field: OrientationField,
