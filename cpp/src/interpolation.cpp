@@ -213,7 +213,7 @@ class FieldInterpolator::State {
     std::vector<Vec3> directions(mesh_.triangle_count(), Vec3{0, 0, 0});
     std::vector<double> confidence(mesh_.triangle_count());
     for (std::int32_t t = 0; t < triangle_count(); ++t) {
-      confidence[t] = std::min(std::abs(phase[t]), 1.0);
+      confidence[t] = std::min(std::sqrt(std::norm(phase[t])), 1.0);
       if (confidence[t] > 0) directions[t] = detail::vec3(detail::direction_of(phase[t], frames_[t]));
     }
     for (const auto& given : constraints) {

@@ -24,19 +24,15 @@ struct Direction {
   double out_of_plane_angle = 0;
 };
 
-/// A triangle's plane, spanned by its first side and the direction to the left of it.
 struct Plane {
   std::array<Vector, 3> sides;
-  Vector normal, along, across;
+  Vector normal;
 };
 
 Plane plane_of(const SurfaceMesh& mesh, std::size_t t) {
   const auto& [a, b, c] = mesh.triangles()[t];
   const auto at = [&](std::int32_t v) { return vector(mesh.vertices()[v]); };
-  Plane plane{{at(b) - at(a), at(c) - at(b), at(a) - at(c)}, vector(mesh.triangle_normals()[t]), {}, {}};
-  plane.along = plane.sides[0].normalized();
-  plane.across = plane.normal.cross(plane.along);
-  return plane;
+  return {{at(b) - at(a), at(c) - at(b), at(a) - at(c)}, vector(mesh.triangle_normals()[t])};
 }
 
 /// The sign of a line is free: this one depends on the triangle's own sides only, so that neither the input's sign
@@ -63,38 +59,47 @@ Direction from_vector(const Vec3& input, const Plane& plane) {
   return {DirectionStatus::valid, with_canonical_sign(in_plane / share, plane), std::atan2(std::abs(height), share)};
 }
 
-/// A symmetric tensor in a triangle's plane: t_uu - t_vv and 2 t_uv turn twice as fast as its principal direction.
-struct PlaneTensor {
-  double difference = 0, shear = 0, trace = 0, size = 0;
+/// A symmetric tensor in a triangle's plane, spanned by its first side and the direction to the left of it: t_uu - t_vv
+/// and 2 t_uv turn twice as fast as its principal direction.
+class PlaneTensor {
+ public:
+  explicit PlaneTensor(const Plane& plane)
+      : plane_(plane), along_(plane.sides[0].normalized()), across_(plane.normal.cross(along_)) {}
 
-  void add_line(const Vector& unit, const Plane& plane) {
-    const double u = unit.dot(plane.along), v = unit.dot(plane.across);
-    difference += u * u - v * v;
-    shear += 2 * u * v;
-    trace += u * u + v * v;
-    size += 1;
+  void add(const Vec3& line) {
+    const Vector unit = (vector(line) / vector(line).cwiseAbs().maxCoeff()).normalized();
+    const double u = unit.dot(along_), v = unit.dot(across_);
+    difference_ += u * u - v * v;
+    shear_ += 2 * u * v;
+    trace_ += u * u + v * v;
+    size_ += 1;
   }
 
-  void add_tensor(const SymmetricTensor& t, const Plane& plane) {
+  void add(const SymmetricTensor& t) {
     Eigen::Matrix3d full;
     full << t[0], t[3], t[5], t[3], t[1], t[4], t[5], t[4], t[2];
     const double scale = full.cwiseAbs().maxCoeff();
     full /= scale;
-    const double uu = plane.along.dot(full * plane.along), vv = plane.across.dot(full * plane.across);
-    difference += uu - vv;
-    shear += 2 * plane.along.dot(full * plane.across);
-    trace += std::abs(uu) + std::abs(vv);
-    size += full.norm();
+    const double uu = along_.dot(full * along_), vv = across_.dot(full * across_);
+    difference_ += uu - vv;
+    shear_ += 2 * along_.dot(full * across_);
+    trace_ += std::abs(uu) + std::abs(vv);
+    size_ += full.norm();
   }
 
-  Direction principal(const Plane& plane) const {
-    const double magnitude = std::hypot(difference, shear);
-    if (trace <= least_share * size && magnitude <= least_share * size) return {DirectionStatus::normal};
-    if (magnitude <= least_share * size) return {DirectionStatus::isotropic};
-    const double angle = std::atan2(shear, difference) / 2;
-    const Vector unit = std::cos(angle) * plane.along + std::sin(angle) * plane.across;
-    return {DirectionStatus::valid, with_canonical_sign(unit, plane)};
+  Direction principal() const {
+    const double magnitude = std::hypot(difference_, shear_);
+    if (trace_ <= least_share * size_ && magnitude <= least_share * size_) return {DirectionStatus::normal};
+    if (magnitude <= least_share * size_) return {DirectionStatus::isotropic};
+    const double angle = std::atan2(shear_, difference_) / 2;
+    const Vector unit = std::cos(angle) * along_ + std::sin(angle) * across_;
+    return {DirectionStatus::valid, with_canonical_sign(unit, plane_)};
   }
+
+ private:
+  const Plane& plane_;
+  Vector along_, across_;
+  double difference_ = 0, shear_ = 0, trace_ = 0, size_ = 0;
 };
 
 DirectionStatus status_of(std::span<const double> numbers) {
@@ -105,29 +110,22 @@ DirectionStatus status_of(std::span<const double> numbers) {
                                                                                       : DirectionStatus::valid;
 }
 
-void add(PlaneTensor& sum, const Vec3& v, const Plane& plane) {
-  sum.add_line((vector(v) / vector(v).cwiseAbs().maxCoeff()).normalized(), plane);
-}
-void add(PlaneTensor& sum, const SymmetricTensor& t, const Plane& plane) {
-  sum.add_tensor(t, plane);
-}
-
 /// The line average of the valid ones among some inputs.
 template <class Input>
 Direction average(std::span<const Input> inputs, const Plane& plane) {
-  PlaneTensor sum;
+  PlaneTensor sum(plane);
   auto worst = DirectionStatus::zero;
   bool any = false;
   for (const auto& input : inputs) {
     const auto status = status_of(input);
     if (status == DirectionStatus::valid) {
-      add(sum, input, plane);
+      sum.add(input);
       any = true;
     } else {
       worst = std::max(worst, status);
     }
   }
-  return any ? sum.principal(plane) : Direction{worst};
+  return any ? sum.principal() : Direction{worst};
 }
 
 void check_count(std::size_t given, std::size_t expected, const char* per) {

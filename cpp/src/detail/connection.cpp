@@ -67,8 +67,11 @@ Phase phase_of(const Vector& direction, const TriangleFrame& frame) {
 }
 
 Vector direction_of(const Phase& phase, const TriangleFrame& frame) {
-  const Phase line = std::sqrt(phase / std::abs(phase));
-  return line.real() * frame.along + line.imag() * frame.across;
+  const double cosine = phase.real() / std::sqrt(std::norm(phase));
+  double along = std::sqrt((1 + cosine) / 2);  // half the angle, by whichever root is far from 0
+  double across = std::sqrt((1 - cosine) / 2);
+  (cosine > 0 ? across : along) = std::abs(phase.imag()) / std::sqrt(std::norm(phase)) / (2 * std::max(along, across));
+  return std::copysign(along, phase.imag()) * frame.along + across * frame.across;
 }
 
 Connection make_connection(const SurfaceMesh& mesh) {

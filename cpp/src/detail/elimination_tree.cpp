@@ -42,9 +42,10 @@ Places dissect(Graph& graph) {
   std::vector<idx_t> order(count), place(count);
   std::iota(order.begin(), order.end(), 0);
   if (graph.neighbours.empty()) return {order.begin(), order.end()};  // which METIS does not take
-  const int status = METIS_NodeND(&count, graph.offsets.data(), graph.neighbours.data(), nullptr, nullptr, order.data(),
-                                  place.data());
-  if (status != METIS_OK) throw SolverFailure("METIS found no order of elimination (status " + std::to_string(status) + ")");
+  const int status =
+      METIS_NodeND(&count, graph.offsets.data(), graph.neighbours.data(), nullptr, nullptr, order.data(), place.data());
+  if (status != METIS_OK)
+    throw SolverFailure("METIS found no order of elimination (status " + std::to_string(status) + ")");
   return {order.begin(), order.end()};
 }
 

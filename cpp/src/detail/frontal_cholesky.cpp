@@ -11,8 +11,8 @@
 namespace pectinate::detail {
 namespace {
 
-/// Columns join a front although their patterns differ a little, because dense work is cheap and fronts are not: as long
-/// as the front is small, or has no more than this share of zeros.
+/// Columns join a front although their patterns differ a little, because dense work is cheap and fronts are not: as
+/// long as the front is small, or has no more than this share of zeros.
 constexpr double tolerated_zeros = 0.2;
 constexpr std::int32_t small_front = 8;
 
