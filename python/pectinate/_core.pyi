@@ -1,4 +1,4 @@
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import Enum, IntEnum
 from typing import Any
 
@@ -82,6 +82,50 @@ class OrientationField:
     out_of_plane_angles: _Floats
     def count(self, status: DirectionStatus) -> int: ...
 
+class BoundaryRule(Enum):
+    free = 0
+    parallel = 1
+    perpendicular = 2
+
+class Tract:
+    def __init__(self, points: _Numbers, *, name: str = "", weight: float = ...) -> None: ...
+    name: str
+    points: _Floats
+    weight: float
+
+class BoundaryCondition:
+    def __init__(self, loop: int, rule: BoundaryRule, *, weight: float = ...) -> None: ...
+    loop: int
+    rule: BoundaryRule
+    weight: float
+
+class ProjectedTract:
+    points: _Floats
+    triangles: _Ints
+    greatest_distance: float
+
+class Constraints:
+    triangles: _Ints
+    directions: _Floats
+    weights: _Floats
+    tract_indices: _Ints
+    tracts: list[ProjectedTract]
+    conflict_triangles: _Ints
+    conflict_tracts: _Ints
+    conflict_angles: _Floats
+
+class TractProjector:
+    def __init__(self, mesh: SurfaceMesh) -> None: ...
+    def nearest_surface_points(self, points: _Numbers) -> tuple[_Ints, _Floats, _Floats]: ...
+    def make_constraints(
+        self,
+        tracts: Sequence[Tract],
+        boundary: Sequence[BoundaryCondition] = ...,
+        *,
+        maximum_distance: float | None = None,
+        conflict_angle: float = ...,
+    ) -> Constraints: ...
+
 class PlacementMethod(Enum):
     random = 0
     neighborhood = 1
@@ -161,6 +205,16 @@ class DemoAtrium:
     region_names: list[str]
     loops: list[NamedLoop]
 
+def nearest_surface_points(mesh: SurfaceMesh, points: _Numbers) -> tuple[_Ints, _Floats, _Floats]: ...
+def nearest_boundary_loop(mesh: SurfaceMesh, point: Sequence[float] | _Floats) -> int: ...
+def make_constraints(
+    mesh: SurfaceMesh,
+    tracts: Sequence[Tract],
+    boundary: Sequence[BoundaryCondition] = ...,
+    *,
+    maximum_distance: float | None = None,
+    conflict_angle: float = ...,
+) -> Constraints: ...
 def place_streamlines(
     mesh: SurfaceMesh,
     field: OrientationField,
