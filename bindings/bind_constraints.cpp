@@ -32,7 +32,10 @@ points : (n, 3) float64
 triangles : (n - 1,) int32
     Per segment, the mesh triangle that holds it.
 greatest_distance : float
-    From the tract's given points to the surface.)";
+    From the tract's given points to the surface.
+greatest_detour : float
+    Of the curves between given points, the greatest length over the straight distance; far above 1.6 where two points
+    lie on either side of a hole or a cut, or one came to the wrong wall.)";
 
 constexpr auto constraints_doc = R"(What tracts and boundary conditions ask of triangles, at most once of each.
 
@@ -112,7 +115,7 @@ py::array_t<Number> column(const std::vector<Item>& items, const Get& get) {
   return result;
 }
 
-/// The same as a read-only property of Constraints.
+/// The same, read-only, for `def_property_readonly` of Constraints.
 template <class Number, std::size_t Columns, class Item, class Get>
 auto column_of(std::vector<Item> Constraints::* items, Get get) {
   return [items, get](const Constraints& constraints) {
@@ -154,7 +157,8 @@ void bind_result(py::module_& module) {
   py::class_<ProjectedTract>(module, "ProjectedTract", projected_doc)
       .def_property_readonly("points", viewed<ProjectedTract>(&ProjectedTract::points))
       .def_property_readonly("triangles", viewed<ProjectedTract>(&ProjectedTract::triangles))
-      .def_readonly("greatest_distance", &ProjectedTract::greatest_distance);
+      .def_readonly("greatest_distance", &ProjectedTract::greatest_distance)
+      .def_readonly("greatest_detour", &ProjectedTract::greatest_detour);
   const auto items = &Constraints::triangles;
   const auto conflicts = &Constraints::conflicts;
   py::class_<Constraints>(module, "Constraints", constraints_doc)
@@ -185,11 +189,11 @@ py::tuple as_arrays(const std::vector<SurfacePoint>& nearest) {
                         column<double, 1>(nearest, [](const SurfacePoint& p) { return std::array{p.distance}; }));
 }
 
-/// `find` of points (or of a point) without the interpreter lock.
-template <class Find>
-auto released(const Find& find) {
+/// Runs `work` without the interpreter lock.
+template <class Work>
+auto released(const Work& work) {
   const py::gil_scoped_release release;
-  return find();
+  return work();
 }
 
 void bind_projector(py::module_& module) {

@@ -103,6 +103,7 @@ class ProjectedTract:
     points: _Floats
     triangles: _Ints
     greatest_distance: float
+    greatest_detour: float
 
 class Constraints:
     triangles: _Ints

@@ -48,6 +48,9 @@ struct ProjectedTract {
   std::vector<Vec3> points;
   std::vector<std::int32_t> triangles;  ///< per segment, the mesh triangle that holds it
   double greatest_distance;             ///< from the tract's given points to the surface
+  /// Of the curves between given points, the greatest length over the straight distance. Far above 1.6, the half turn
+  /// around a tube, where two points lie on either side of a hole or a cut, or one came to the wrong wall.
+  double greatest_detour;
 };
 
 /// What a triangle's orientation has to be.
@@ -59,7 +62,7 @@ struct TriangleConstraint {
 };
 
 /// Two demands on one triangle that contradict each other. The first listed tract prevails; any tract over a boundary;
-/// of a tract that crosses itself the first passage; of boundary conditions the first listed.
+/// of a tract that crosses itself the first passage.
 struct ConstraintConflict {
   std::int32_t triangle;
   std::int32_t kept,

@@ -45,37 +45,39 @@ Demand average(std::span<const Demand> kept) {
 /// The stretch of a tract in one triangle between coming in and going out.
 struct Passage {
   std::int32_t triangle;
-  Phase sum = 0;  // of its segments, by length
-  double length = 0;
-  Phase longest_phase = 0;
-  double longest = 0;
-
-  void add(const Phase& phase, double piece) {
-    sum += piece * phase;
-    length += piece;
-    if (piece <= longest) return;
-    longest = piece;
-    longest_phase = phase;
-  }
-  Phase phase() const {
-    return std::abs(sum) > least_resultant * length ? sum / std::abs(sum) : longest_phase / std::abs(longest_phase);
-  }
+  Vector start, end;
+  double length;
+  Phase sum;  // of its segments, by length
 };
 
+Phase phase_of(const SurfaceMesh& mesh, const Passage& passage) {
+  if (std::abs(passage.sum) > least_resultant * passage.length) return passage.sum / std::abs(passage.sum);
+  // Its segments cancel out each other, as at a right angle: from where it comes in to where it goes out.
+  const Vector through = passage.end - passage.start;
+  if (through.norm() > least_resultant * passage.length) {
+    return phase_of(through, triangle_frame(mesh, passage.triangle));
+  }
+  return 1;  // evenly around: no direction is better than another
+}
+
 std::vector<Passage> passages(const SurfaceMesh& mesh, const TractCurve& curve) {
-  const auto& [points, triangles, distance] = curve.projected;
-  // A closed tract starts where it comes into a triangle, not within one.
-  std::size_t start = 0;
+  const auto& points = curve.projected.points;
+  const auto& triangles = curve.projected.triangles;
   const std::size_t count = triangles.size();
+  // A closed tract starts where it comes into a triangle, not within one.
+  std::size_t first = 0;
   if (curve.closed) {
-    while (start < count && triangles[start] == triangles.back()) ++start;
+    while (first < count && triangles[first] == triangles.back()) ++first;
   }
   std::vector<Passage> found;
   for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t s = (start + i) % count;
-    if (found.empty() || found.back().triangle != triangles[s]) found.push_back({triangles[s]});
-    found.back().add(phase_of(curve.directions[s], triangle_frame(mesh, triangles[s])),
-                     (vector(points[s + 1]) - vector(points[s])).norm());
+    const std::size_t s = (first + i) % count;
+    const Vector start = vector(points[s]), end = vector(points[s + 1]);
+    if (found.empty() || found.back().triangle != triangles[s]) found.push_back({triangles[s], start, end, 0, 0});
+    const double length = (end - start).norm();
+    found.back().end = end;
+    found.back().length += length;
+    found.back().sum += length * phase_of(curve.directions[s], triangle_frame(mesh, triangles[s]));
   }
   return found;
 }
@@ -109,7 +111,7 @@ SettledDemands tract_demands(const SurfaceMesh& mesh, const TractCurve& curve, c
                              double conflict_angle) {
   std::vector<Demand> demands;
   for (const auto& passage : passages(mesh, curve)) {
-    demands.push_back({passage.triangle, passage.phase(), passage.length, index});
+    demands.push_back({passage.triangle, phase_of(mesh, passage), passage.length, index});
   }
   auto settled = settle(std::move(demands), conflict_angle);
   for (auto& demand : settled.demands) demand.weight = tract.weight;

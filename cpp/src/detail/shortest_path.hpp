@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "detail/surface_curve.hpp"
@@ -8,7 +9,9 @@
 namespace pectinate::detail {
 
 /// A locally shortest path over the surface between places in two triangles of one component: the shortest one in the
-/// strip of triangles that the shortest path through midpoints of edges crosses.
-std::vector<CurvePiece> shortest_path(const SurfaceMesh& mesh, const Place& a, const Place& b);
+/// strip of triangles that a nearly shortest path through midpoints of edges crosses. None if even that is longer than
+/// `limit`.
+std::optional<std::vector<CurvePiece>> shortest_path(const SurfaceMesh& mesh, const Place& a, const Place& b,
+                                                     double limit);
 
 }  // namespace pectinate::detail

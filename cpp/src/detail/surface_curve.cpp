@@ -127,10 +127,11 @@ std::vector<CurvePiece> join(const SurfaceMesh& mesh, const Place& a, const Plac
   if (a.triangle == b.triangle) return {{a.triangle, b.point, b.point - a.point}};
   if (a.triangle > b.triangle) return reversed(b.point, join(mesh, b, a));
   auto cut = cut_by_normal_plane(mesh, a, b);
-  const double length = cut ? curve_length(a.point, *cut) : 0;
-  if (cut && length <= plain_ratio * (b.point - a.point).norm()) return std::move(*cut);
-  auto path = shortest_path(mesh, a, b);
-  return cut && length <= greatest_detour * curve_length(a.point, path) ? std::move(*cut) : std::move(path);
+  const double length = cut ? curve_length(a.point, *cut) : std::numeric_limits<double>::infinity();
+  if (length <= plain_ratio * (b.point - a.point).norm()) return std::move(*cut);
+  auto path = shortest_path(mesh, a, b, length);
+  if (cut && !(path && greatest_detour * curve_length(a.point, *path) < length)) return std::move(*cut);
+  return std::move(path).value();
 }
 
 }  // namespace pectinate::detail

@@ -68,15 +68,22 @@ TractCurve without_specks(const SurfaceMesh& mesh, const std::vector<Step>& step
   return curve;
 }
 
-std::vector<Step> join_all(const SurfaceMesh& mesh, const std::vector<Place>& places) {
-  std::vector<Step> steps{{places[0], Vector::Zero(), true}};
+struct JoinedPlaces {
+  std::vector<Step> steps;
+  double greatest_detour;
+};
+
+JoinedPlaces join_all(const SurfaceMesh& mesh, const std::vector<Place>& places) {
+  JoinedPlaces joined{{{places[0], Vector::Zero(), true}}, 1};
   for (std::size_t i = 1; i < places.size(); ++i) {
-    for (const auto& piece : join(mesh, places[i - 1], places[i])) {
-      steps.push_back({{piece.triangle, piece.end}, piece.direction, false});
-    }
-    steps.back().given = true;
+    const auto pieces = join(mesh, places[i - 1], places[i]);
+    for (const auto& piece : pieces) joined.steps.push_back({{piece.triangle, piece.end}, piece.direction, false});
+    joined.steps.back().given = true;
+    const double length = curve_length(places[i - 1].point, pieces);
+    const double detour = length / (places[i].point - places[i - 1].point).norm();
+    joined.greatest_detour = std::max(joined.greatest_detour, detour);
   }
-  return steps;
+  return joined;
 }
 
 void check_component(const SurfaceMesh& mesh, const std::vector<SurfacePoint>& nearest, const std::string& label) {
@@ -129,7 +136,11 @@ TractCurve project_tract(const SurfaceMesh& mesh, const TriangleTree& tree, cons
     greatest = std::max(greatest, distance);
   }
   TractCurve curve{};
-  if (!places.empty()) curve = without_specks(mesh, join_all(mesh, distinct(mesh, places)));
+  if (!places.empty()) {
+    const auto [steps, greatest_detour] = join_all(mesh, distinct(mesh, places));
+    curve = without_specks(mesh, steps);
+    curve.projected.greatest_detour = greatest_detour;
+  }
   if (curve.directions.empty()) {
     throw InvalidOption(label + " has fewer than two distinct points on the surface, but needs two for a direction");
   }

@@ -15,6 +15,9 @@ constexpr std::size_t leaf_size = 4;
 /// A box is left out only if it is farther than this times the best: rounding must not part equally near triangles.
 constexpr double slack = 1 + 1e-12;
 
+/// A foot as near to a side as this is taken from the side: both its triangles then find the same point.
+constexpr double side_share = 1e-13;
+
 Vector nearest_on_side(const Vector& point, Vector a, Vector b) {
   if (std::lexicographical_compare(b.begin(), b.end(), a.begin(), a.end())) std::swap(a, b);
   const Vector side = b - a;
@@ -33,9 +36,8 @@ Vector nearest_in_triangle(const Vector& point, const std::array<Vector, 3>& cor
   const double to_a = normal.dot((c - b).cross(point - b));
   const double to_b = normal.dot((a - c).cross(point - c));
   const double to_c = normal.dot((b - a).cross(point - a));
-  if (to_a >= 0 && to_b >= 0 && to_c >= 0 && to_a + to_b + to_c > 0) {
-    return (to_a * a + to_b * b + to_c * c) / (to_a + to_b + to_c);
-  }
+  const double total = to_a + to_b + to_c;
+  if (std::min({to_a, to_b, to_c}) > side_share * total) return (to_a * a + to_b * b + to_c * c) / total;
   Vector best = nearest_on_side(point, a, b);
   for (const Vector& other : {nearest_on_side(point, b, c), nearest_on_side(point, c, a)}) {
     if ((other - point).squaredNorm() < (best - point).squaredNorm()) best = other;
