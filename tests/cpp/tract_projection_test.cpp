@@ -15,8 +15,8 @@
 namespace pectinate::test {
 namespace {
 
-using detail::Vector;
 using detail::vec3;
+using detail::Vector;
 using detail::vector;
 
 Constraints only(const SurfaceMesh& mesh, const Tract& tract) {
@@ -287,9 +287,10 @@ TEST_CASE("projection: around a hole, about as short as can be") {
 TEST_CASE("projection: the locally shortest path is straight where the strip allows it") {
   Random random(7);
   // In a strip of one row every triangle is passed, and a straight line stays inside.
-  const auto strip = mapped(jittered_grid(30, 1), [](const Vector& v) {
-    return Vector(std::cos(0.2 * v.x()), v.y(), std::sin(0.2 * v.x()));  // rolled up: prisms unfold exactly
-  }).mesh();
+  const auto strip =
+      mapped(jittered_grid(30, 1), [](const Vector& v) {
+        return Vector(std::cos(0.2 * v.x()), v.y(), std::sin(0.2 * v.x()));  // rolled up: prisms unfold exactly
+      }).mesh();
   const double width = 2 * std::sin(0.1);
   for (int i = 0; i < 20; ++i) {
     const double y0 = random.unit(), y1 = random.unit();
@@ -347,9 +348,8 @@ TEST_CASE("projection: a closed tract around a Moebius strip") {
 TEST_CASE("projection: the farther the detour, the clearer the report") {
   // Two walls 0.2 apart, joined at one end: a point that comes to the wrong wall makes a long way.
   Soup soup = grid(20, 4);
-  soup = mapped(std::move(soup), [](const Vector& v) {
-    return v.x() <= 10 ? v : Vector(20 - v.x(), v.y(), v.x() <= 10 ? 0 : 0.2);
-  });
+  soup = mapped(std::move(soup),
+                [](const Vector& v) { return v.x() <= 10 ? v : Vector(20 - v.x(), v.y(), v.x() <= 10 ? 0 : 0.2); });
   const auto mesh = soup.mesh();
   CHECK(projected(mesh, {{2, 2, 0.01}, {3, 2, 0.01}, {4, 2, 0.02}}).greatest_detour == doctest::Approx(1));
   const auto wrong = projected(mesh, {{2, 2, 0.01}, {3, 2, 0.19}, {4, 2, 0.02}});
@@ -382,7 +382,8 @@ TEST_CASE("projection: errors name the tract and the point") {
   for (const double far : {0.2, 1e3, 1e12, 1e200, 1e308}) {
     CHECK(message(named({{1, 1, 0}, {2, 1, -far}})).starts_with("tract 1 \"Bachmann\": point 1 is "));
   }
-  CHECK(message(named({{1, 1, 0}, {2, 1, -0.5}})).find("point 1 is 0.500000 away from the surface") != std::string::npos);
+  CHECK(message(named({{1, 1, 0}, {2, 1, -0.5}})).find("point 1 is 0.500000 away from the surface") !=
+        std::string::npos);
   CHECK(message(named({{1, 1, 0}, {2, 1, 0}, {2, 1, 10}})).find("points 1 and 2 lie on different components") !=
         std::string::npos);
   // Across a cut at an edge with three triangles there is no surface.

@@ -31,6 +31,7 @@ Vector inside(const SurfaceMesh& mesh, const Place& place) {
 struct Plane {
   const SurfaceMesh& mesh;
   Vector origin, normal;
+  Vector true_normal;  // before the places were moved inside their triangles: directions are exact
 
   double height(std::int32_t vertex) const { return normal.dot(vector(mesh.vertices()[vertex]) - origin); }
   std::int32_t corner(std::int32_t t, int k) const { return mesh.triangles()[t][k % 3]; }
@@ -51,7 +52,7 @@ struct Plane {
     return (1 - position) * vector(mesh.vertices()[a]) + position * vector(mesh.vertices()[b]);
   }
   CurvePiece piece(std::int32_t t, const Vector& end) const {
-    return {t, end, normal.cross(vector(mesh.triangle_normals()[t]))};
+    return {t, end, true_normal.cross(vector(mesh.triangle_normals()[t]))};
   }
 };
 
@@ -105,10 +106,10 @@ double curve_length(const Vector& start, const std::vector<CurvePiece>& pieces) 
 }
 
 std::optional<std::vector<CurvePiece>> cut_by_normal_plane(const SurfaceMesh& mesh, const Place& a, const Place& b) {
-  const Vector origin = inside(mesh, a), axis = inside(mesh, b) - origin;
-  const Vector normal = axis.cross(common_normal(mesh, a, b));
+  const Vector origin = inside(mesh, a), axis = inside(mesh, b) - origin, up = common_normal(mesh, a, b);
+  const Vector normal = axis.cross(up), true_normal = (b.point - a.point).cross(up);
   if (!(normal.norm() > least_normal_share * axis.norm())) return std::nullopt;
-  const Plane plane{mesh, origin, normal.normalized()};
+  const Plane plane{mesh, origin, normal.normalized(), true_normal.normalized()};
   std::optional<std::vector<CurvePiece>> best;
   double least = std::numeric_limits<double>::infinity();
   for (int side = 0; side < 3; ++side) {
