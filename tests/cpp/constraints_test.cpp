@@ -70,8 +70,8 @@ Tracts random_tracts(const SurfaceMesh& mesh, int count, std::uint64_t seed) {
   Random random(seed);
   Tracts tracts;
   for (int i = 0; i < count; ++i) {
-    std::vector<Vec3> points;
-    for (int k = 0; k < 4; ++k) points.push_back(vec3(random_place(mesh, random)));
+    std::vector<Vec3> points(4);
+    for (auto& point : points) point = vec3(random_place(mesh, random));
     tracts.push_back(tract(points, i % 3 == 0 ? hard : 1 + random.unit()));
   }
   return tracts;
@@ -133,8 +133,8 @@ TEST_CASE("constraints: a right angle in a triangle is cut short, and evenly aro
 
 TEST_CASE("constraints: a closed tract has no corner where it starts") {
   const auto mesh = jittered_grid(10, 10).mesh();
-  std::vector<Vec3> circle;
-  for (int i = 0; i < 40; ++i) circle.push_back({5 + 3 * std::cos(turn(i, 40)), 5 + 3 * std::sin(turn(i, 40)), 0});
+  std::vector<Vec3> circle(40);
+  for (int i = 0; i < 40; ++i) circle[i] = {5 + 3 * std::cos(turn(i, 40)), 5 + 3 * std::sin(turn(i, 40)), 0};
   auto closed = [&](int start) {
     auto points = circle;
     std::rotate(points.begin(), points.begin() + start, points.end());

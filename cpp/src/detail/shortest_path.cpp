@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <queue>
 #include <unordered_map>
 #include <utility>
@@ -162,9 +163,9 @@ class Funnel {
       wall = next;
       return false;
     }
-    const Bend bend = other;
-    bends_.push_back(bend);
-    apex_ = left_ = right_ = bend;
+    apex_ = other;
+    left_ = right_ = apex_;
+    bends_.push_back(apex_);
     return true;
   }
 
@@ -182,12 +183,9 @@ double passing(const Gate& gate, const Flat& from, const Flat& to) {
   return std::isfinite(share) ? std::clamp(share, least_edge_share, 1 - least_edge_share) : least_edge_share;
 }
 
-}  // namespace
-
-std::optional<std::vector<CurvePiece>> shortest_path(const SurfaceMesh& mesh, const Place& a, const Place& b,
-                                                     double limit) {
-  const auto sides = StripSearch(mesh, a, b).run(limit);
-  if (sides.empty()) return std::nullopt;
+/// The shortest path that leaves triangles through these sides.
+std::vector<CurvePiece> path_through(const SurfaceMesh& mesh, const std::vector<std::int32_t>& sides, const Place& a,
+                                     const Place& b) {
   auto gates = unfold_strip(mesh, sides);
   const Flat start = unfold(mesh, gates.front(), a.point, -1), goal = unfold(mesh, gates.back(), b.point, 1);
   gates.push_back({-1, -1, goal, goal});
@@ -209,6 +207,19 @@ std::optional<std::vector<CurvePiece>> shortest_path(const SurfaceMesh& mesh, co
   }
   add(b.triangle, b.point);
   return pieces;
+}
+
+}  // namespace
+
+std::vector<CurvePiece> shortest_path(const SurfaceMesh& mesh, const Place& a, const Place& b) {
+  return path_through(mesh, StripSearch(mesh, a, b).run(std::numeric_limits<double>::infinity()), a, b);
+}
+
+std::optional<std::vector<CurvePiece>> path_within(const SurfaceMesh& mesh, const Place& a, const Place& b,
+                                                   double limit) {
+  const auto sides = StripSearch(mesh, a, b).run(limit);
+  if (sides.empty()) return std::nullopt;
+  return path_through(mesh, sides, a, b);
 }
 
 }  // namespace pectinate::detail

@@ -127,12 +127,12 @@ std::optional<std::vector<CurvePiece>> cut_by_normal_plane(const SurfaceMesh& me
 std::vector<CurvePiece> join(const SurfaceMesh& mesh, const Place& a, const Place& b) {
   if (a.triangle == b.triangle) return {{a.triangle, b.point, b.point - a.point}};
   if (a.triangle > b.triangle) return reversed(b.point, join(mesh, b, a));
-  auto cut = cut_by_normal_plane(mesh, a, b);
-  const double length = cut ? curve_length(a.point, *cut) : std::numeric_limits<double>::infinity();
-  if (length <= plain_ratio * (b.point - a.point).norm()) return std::move(*cut);
-  auto path = shortest_path(mesh, a, b, length);
-  if (cut && !(path && greatest_detour * curve_length(a.point, *path) < length)) return std::move(*cut);
-  return std::move(path).value();
+  const auto cut = cut_by_normal_plane(mesh, a, b);
+  if (!cut) return shortest_path(mesh, a, b);
+  const double length = curve_length(a.point, *cut);
+  if (length <= plain_ratio * (b.point - a.point).norm()) return *cut;
+  const auto path = path_within(mesh, a, b, length);
+  return path && greatest_detour * curve_length(a.point, *path) < length ? *path : *cut;
 }
 
 }  // namespace pectinate::detail
