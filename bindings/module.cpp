@@ -9,6 +9,7 @@ PYBIND11_MODULE(_core, module) {
   bind_orientation_field(module);
   bind_field_topology(module);
   bind_interpolation(module);
+  bind_constraints(module);
   bind_placement(module);
   bind_tubes(module);
   bind_demo_atrium(module);

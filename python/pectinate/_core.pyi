@@ -1,4 +1,4 @@
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import Enum, IntEnum
 from typing import Any
 
@@ -98,6 +98,50 @@ class Singularity:
 class FieldTopology:
     singularities: list[Singularity]
     loop_half_turns: list[int | None]
+class BoundaryRule(Enum):
+    free = 0
+    parallel = 1
+    perpendicular = 2
+
+class Tract:
+    def __init__(self, points: _Numbers, *, name: str = "", weight: float = ...) -> None: ...
+    name: str
+    points: _Floats
+    weight: float
+
+class BoundaryCondition:
+    def __init__(self, loop: int, rule: BoundaryRule, *, weight: float = ...) -> None: ...
+    loop: int
+    rule: BoundaryRule
+    weight: float
+
+class ProjectedTract:
+    points: _Floats
+    triangles: _Ints
+    greatest_distance: float
+    greatest_detour: float
+
+class Constraints:
+    triangles: _Ints
+    directions: _Floats
+    weights: _Floats
+    tract_indices: _Ints
+    tracts: list[ProjectedTract]
+    conflict_triangles: _Ints
+    conflict_tracts: _Ints
+    conflict_angles: _Floats
+
+class TractProjector:
+    def __init__(self, mesh: SurfaceMesh) -> None: ...
+    def nearest_surface_points(self, points: _Numbers) -> tuple[_Ints, _Floats, _Floats]: ...
+    def make_constraints(
+        self,
+        tracts: Sequence[Tract],
+        boundary: Sequence[BoundaryCondition] = ...,
+        *,
+        maximum_distance: float | None = None,
+        conflict_angle: float = ...,
+    ) -> Constraints: ...
 
 class PlacementMethod(Enum):
     random = 0
@@ -180,6 +224,16 @@ class DemoAtrium:
 
 def field_topology(mesh: SurfaceMesh, field: OrientationField) -> FieldTopology: ...
 def dirichlet_energy(mesh: SurfaceMesh, field: OrientationField) -> float: ...
+def nearest_surface_points(mesh: SurfaceMesh, points: _Numbers) -> tuple[_Ints, _Floats, _Floats]: ...
+def nearest_boundary_loop(mesh: SurfaceMesh, point: Sequence[float] | _Floats) -> int: ...
+def make_constraints(
+    mesh: SurfaceMesh,
+    tracts: Sequence[Tract],
+    boundary: Sequence[BoundaryCondition] = ...,
+    *,
+    maximum_distance: float | None = None,
+    conflict_angle: float = ...,
+) -> Constraints: ...
 def place_streamlines(
     mesh: SurfaceMesh,
     field: OrientationField,

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -41,22 +42,27 @@ struct ConstraintOptions {
   double conflict_angle = 0.5235987755982988;  // 30 degrees
 };
 
-/// A tract on the surface: consecutive points lie in one triangle, all but the first and last of each run on its edges.
+/// A tract on the surface: its own points, brought there, and between them the points where the curve crosses edges.
+/// Consecutive points lie in one triangle, never closer than 1e-9 of its longest side.
 struct ProjectedTract {
   std::vector<Vec3> points;
   std::vector<std::int32_t> triangles;  ///< per segment, the mesh triangle that holds it
   double greatest_distance;             ///< from the tract's given points to the surface
+  /// Of the curves between given points, the greatest length over the straight distance. Far above 1.6, the half turn
+  /// around a tube, where two points lie on either side of a hole or a cut, or one came to the wrong wall.
+  double greatest_detour;
 };
 
 /// What a triangle's orientation has to be.
 struct TriangleConstraint {
   std::int32_t triangle;  ///< of the mesh
   Vec3 direction;         ///< unit, in the triangle's plane; a line without a sign
-  double weight;          ///< `hard` or as in Tract
-  std::int32_t tract;     ///< index of the tract that asks for it, -1 for a boundary condition
+  double weight;          ///< `hard`, or the sum of the weights of all that ask for it
+  std::int32_t tract;     ///< index of the first tract that asks for it, -1 for a boundary condition
 };
 
-/// Two demands on one triangle that contradict each other. The first listed tract prevails; any tract over a boundary.
+/// Two demands on one triangle that contradict each other. The first listed tract prevails; any tract over a boundary;
+/// of a tract that crosses itself the first passage.
 struct ConstraintConflict {
   std::int32_t triangle;
   std::int32_t kept,
@@ -77,22 +83,47 @@ struct SurfacePoint {
   double distance;
 };
 
-/// For each point the nearest one of the surface; of equally near triangles the first.
+/// For each point the nearest one of the surface; of equally near triangles the first. Throws InvalidOption for a point
+/// that is not finite or farther away than 1e9 diagonals of the mesh's bounding box.
 std::vector<SurfacePoint> nearest_surface_points(const SurfaceMesh& mesh, std::span<const Vec3> points);
 
-/// The boundary loop with the point nearest to `point`. Throws InvalidMesh for a closed surface.
+/// The boundary loop with the point nearest to `point`. Throws InvalidMesh for a closed surface, InvalidOption for a
+/// point that is not finite.
 std::int32_t nearest_boundary_loop(const SurfaceMesh& mesh, const Vec3& point);
 
 /// Brings tracts to the surface and collects what they and the boundary ask of each triangle.
 ///
 /// A tract's points go to their nearest points; between two of them the curve is where the surface is cut by the plane
-/// through both that is most nearly normal to the surface. Each triangle crossed gets the tangent, length-weighted over
-/// the tract's segments in it. The triangles along a boundary edge get the loop's tangent, smoothed along the loop.
+/// through both that is most nearly normal to it. Where that cut does not join them, or takes a detour, a locally
+/// shortest path does. Each triangle crossed gets the tangent, averaged as a line over the tract's segments in it,
+/// weighted by length. The triangles along a boundary loop get its tangent, smoothed over four edges; one whose sides
+/// are all on the loop gets none.
+///
+/// Demands that differ by at most `conflict_angle` are averaged as lines by their weights; hard ones over weighted
+/// ones. The sense of a tract means nothing, nor does their order where there is no conflict.
 ///
 /// Throws InvalidOption, naming the tract or the condition, for: fewer than two distinct points; a point that is not
-/// finite or too far away; consecutive points on different components, or that no curve on the surface joins; a loop
-/// that does not exist or is given twice; a weight that is not positive; an option out of its range.
+/// finite or too far away; consecutive points on different components; a loop that does not exist or is given twice;
+/// a weight that is not positive; an option out of its range.
 Constraints make_constraints(const SurfaceMesh& mesh, std::span<const Tract> tracts,
                              std::span<const BoundaryCondition> boundary, const ConstraintOptions& options = {});
+
+/// The same for one surface again and again, as in an editor: keeps the search tree for nearest points. Const functions
+/// may be called from several threads. The mesh must outlive it.
+class TractProjector {
+ public:
+  explicit TractProjector(const SurfaceMesh& mesh);
+  TractProjector(TractProjector&&) noexcept;
+  TractProjector& operator=(TractProjector&&) noexcept;
+  ~TractProjector();
+
+  std::vector<SurfacePoint> nearest_surface_points(std::span<const Vec3> points) const;
+  Constraints make_constraints(std::span<const Tract> tracts, std::span<const BoundaryCondition> boundary,
+                               const ConstraintOptions& options = {}) const;
+
+ private:
+  struct State;
+  std::unique_ptr<const State> state_;
+};
 
 }  // namespace pectinate
