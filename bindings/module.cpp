@@ -7,6 +7,8 @@ PYBIND11_MODULE(_core, module) {
   bind_errors(module);
   bind_surface_mesh(module);
   bind_orientation_field(module);
+  bind_parameterization(module);
+  bind_reference_frame(module);
   bind_placement(module);
   bind_tubes(module);
   bind_demo_atrium(module);

@@ -1,4 +1,4 @@
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import Enum, IntEnum
 from typing import Any
 
@@ -82,6 +82,22 @@ class OrientationField:
     out_of_plane_angles: _Floats
     def count(self, status: DirectionStatus) -> int: ...
 
+class Parameterization:
+    points: _Floats
+    outer_loop: int
+    loop_ambiguity: float
+    loop_centres: _Floats
+    flipped_triangles: _Ints
+    area_ratio: _Floats
+    anisotropy: _Floats
+
+class ReferenceFrame:
+    u: _Floats
+    longitudinal: _Floats
+    transverse: _Floats
+    borrowed_triangles: _Ints
+    critical_points: _Ints
+
 class PlacementMethod(Enum):
     random = 0
     neighborhood = 1
@@ -161,6 +177,17 @@ class DemoAtrium:
     region_names: list[str]
     loops: list[NamedLoop]
 
+def has_parameterization() -> bool: ...
+def parameterize(mesh: SurfaceMesh, *, outer_loop: int | None = ...) -> Parameterization: ...
+def make_reference_frame(
+    mesh: SurfaceMesh,
+    parameterization: Parameterization,
+    *,
+    inner_loop: int | None = ...,
+    inner_point: Sequence[float] | _Numbers | None = ...,
+) -> ReferenceFrame: ...
+def field_angles(frame: ReferenceFrame, field: OrientationField) -> _Floats: ...
+def field_from_angles(mesh: SurfaceMesh, frame: ReferenceFrame, angles: _Numbers) -> OrientationField: ...
 def place_streamlines(
     mesh: SurfaceMesh,
     field: OrientationField,
