@@ -8,8 +8,10 @@ PYBIND11_MODULE(_core, module) {
   bind_surface_mesh(module);
   bind_orientation_field(module);
   bind_field_topology(module);
-  bind_interpolation(module);
+  bind_parameterization(module);
+  bind_reference_frame(module);
   bind_constraints(module);
+  bind_interpolation(module);
   bind_placement(module);
   bind_tubes(module);
   bind_demo_atrium(module);

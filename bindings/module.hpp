@@ -9,6 +9,8 @@ void bind_errors(pybind11::module_& module);
 void bind_surface_mesh(pybind11::module_& module);
 void bind_orientation_field(pybind11::module_& module);
 void bind_constraints(pybind11::module_& module);
+void bind_parameterization(pybind11::module_& module);
+void bind_reference_frame(pybind11::module_& module);
 void bind_placement(pybind11::module_& module);
 void bind_tubes(pybind11::module_& module);
 void bind_field_topology(pybind11::module_& module);

@@ -98,6 +98,7 @@ class Singularity:
 class FieldTopology:
     singularities: list[Singularity]
     loop_half_turns: list[int | None]
+
 class BoundaryRule(Enum):
     free = 0
     parallel = 1
@@ -142,6 +143,22 @@ class TractProjector:
         maximum_distance: float | None = None,
         conflict_angle: float = ...,
     ) -> Constraints: ...
+
+class Parameterization:
+    points: _Floats
+    outer_loop: int
+    loop_ambiguity: float
+    loop_centres: _Floats
+    flipped_triangles: _Ints
+    area_ratio: _Floats
+    anisotropy: _Floats
+
+class ReferenceFrame:
+    u: _Floats
+    longitudinal: _Floats
+    transverse: _Floats
+    borrowed_triangles: _Ints
+    critical_points: _Ints
 
 class PlacementMethod(Enum):
     random = 0
@@ -234,6 +251,17 @@ def make_constraints(
     maximum_distance: float | None = None,
     conflict_angle: float = ...,
 ) -> Constraints: ...
+def has_parameterization() -> bool: ...
+def parameterize(mesh: SurfaceMesh, *, outer_loop: int | None = ...) -> Parameterization: ...
+def make_reference_frame(
+    mesh: SurfaceMesh,
+    parameterization: Parameterization,
+    *,
+    inner_loop: int | None = ...,
+    inner_point: Sequence[float] | _Numbers | None = ...,
+) -> ReferenceFrame: ...
+def field_angles(frame: ReferenceFrame, field: OrientationField) -> _Floats: ...
+def field_from_angles(mesh: SurfaceMesh, frame: ReferenceFrame, angles: _Numbers) -> OrientationField: ...
 def place_streamlines(
     mesh: SurfaceMesh,
     field: OrientationField,
