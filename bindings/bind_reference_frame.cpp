@@ -10,7 +10,8 @@
 namespace pectinate::bindings {
 namespace {
 
-constexpr auto frame_doc = R"(A reference field that vanishes nowhere, and its local basis; made by `make_reference_frame`.
+constexpr auto frame_doc =
+    R"(A reference field that vanishes nowhere, and its local basis; made by `make_reference_frame`.
 
 Attributes
 ----------

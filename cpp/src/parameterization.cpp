@@ -136,9 +136,10 @@ Parameterization parameterize(const SurfaceMesh& mesh, const ParameterizationOpt
   const auto filled = detail::fill_holes(mesh, outer_loop);
 
   std::vector<Vec3> centroids;
+  centroids.reserve(loops.size());
   for (const auto& loop : loops) centroids.push_back(loop.centroid);
-  std::vector<std::int32_t> border;
-  for (const auto v : loops[outer_loop].vertices) border.push_back(filled.filled_vertices[v]);
+  std::vector<std::int32_t> border = loops[outer_loop].vertices;
+  for (auto& v : border) v = filled.filled_vertices[v];
   const auto images =
       detail::mean_value_map(detail::on_filled(filled, mesh.vertices(), centroids), filled.triangles, border);
 

@@ -130,9 +130,9 @@ DiskFunction with_constant_regions(DiskFunction u, const Eigen::SparseMatrix<dou
 }
 
 /// Laplace's equation on the disk.
-DiskFunction harmonic(DiskFunction imposed, const FilledSurface& filled, const std::vector<Vec3>& disk) {
+DiskFunction harmonic(const DiskFunction& imposed, const FilledSurface& filled, const std::vector<Vec3>& disk) {
   const auto matrix = detail::mean_value_matrix(disk, filled.triangles);
-  DiskFunction u = with_constant_regions(std::move(imposed), matrix);
+  DiskFunction u = with_constant_regions(imposed, matrix);
   const auto size = static_cast<Eigen::Index>(u.values.size());
   const Eigen::VectorXd given = Eigen::Map<const Eigen::VectorXd>(u.values.data(), size);
   const Eigen::VectorXd solution = detail::DirichletSolver(matrix, u.imposed).solve(given);
@@ -146,60 +146,70 @@ DiskFunction across_disk(DiskFunction u, const std::vector<Vec3>& disk) {
   return u;
 }
 
-/// The unit gradient in each triangle; none where the function is constant or unknown.
-std::vector<std::optional<Vector>> unit_gradients(const SurfaceMesh& mesh, const std::vector<double>& u) {
-  std::vector<std::optional<Vector>> gradients(mesh.triangle_count());
-  for (std::size_t t = 0; t < gradients.size(); ++t) {
+/// A unit vector in every triangle that has one.
+struct Directions {
+  std::vector<Vec3> units;
+  std::vector<bool> known;
+};
+
+/// The direction of the gradient; none where the function is constant or unknown.
+Directions gradient_directions(const SurfaceMesh& mesh, const std::vector<double>& u) {
+  Directions directions{std::vector<Vec3>(mesh.triangle_count()), std::vector<bool>(mesh.triangle_count(), false)};
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const auto& [a, b, c] = mesh.triangles()[t];
     const double rise_b = u[b] - u[a], rise_c = u[c] - u[a];
     if (!(std::max(std::abs(rise_b), std::abs(rise_c)) > rounding)) continue;
     const auto at = [&](std::int32_t v) { return vector(mesh.vertices()[v]); };
     const Vector along_contour = rise_b * (at(a) - at(c)) + rise_c * (at(b) - at(a));
-    gradients[t] = vector(mesh.triangle_normals()[t]).cross(along_contour).normalized();
+    directions.units[t] = detail::vec3(vector(mesh.triangle_normals()[t]).cross(along_contour).normalized());
+    directions.known[t] = true;
   }
-  return gradients;
+  return directions;
+}
+
+Vector unit_side(const SurfaceMesh& mesh, std::int32_t t, int side) {
+  const auto& corners = mesh.triangles()[t];
+  return (vector(mesh.vertices()[corners[(side + 1) % 3]]) - vector(mesh.vertices()[corners[side]])).normalized();
 }
 
 /// A direction in a triangle, turned about a side into the plane of its neighbour there.
-Vector turned_about_side(const SurfaceMesh& mesh, std::int32_t t, int side, const Vector& direction) {
-  const auto& corners = mesh.triangles()[t];
-  const Vector along =
-      (vector(mesh.vertices()[corners[(side + 1) % 3]]) - vector(mesh.vertices()[corners[side]])).normalized();
+Vec3 turned_about_side(const SurfaceMesh& mesh, std::int32_t t, int side, const Vec3& direction) {
+  const Vector along = unit_side(mesh, t, side);
   const auto left = [&](std::int32_t triangle) -> Vector {
     return vector(mesh.triangle_normals()[triangle]).cross(along);
   };
   const auto neighbour = mesh.neighbour(t, side).triangle;
-  return (direction.dot(along) * along + direction.dot(left(t)) * left(neighbour)).normalized();
+  const auto v = vector(direction);
+  return detail::vec3((v.dot(along) * along + v.dot(left(t)) * left(neighbour)).normalized());
 }
 
 /// Gives every triangle a direction: that of the nearest triangle that has one, by the number of sides between; on
 /// components where none has, starting from the first side of the first triangle.
-std::vector<Vec3> spread(const SurfaceMesh& mesh, std::vector<std::optional<Vector>> directions) {
+std::vector<Vec3> spread(const SurfaceMesh& mesh, Directions directions) {
+  auto& [units, known] = directions;
   std::vector<std::int32_t> queue;
-  queue.reserve(directions.size());
-  std::int32_t next_start = 0;
-  for (std::int32_t t = 0; t < static_cast<std::int32_t>(directions.size()); ++t) {
-    if (directions[t]) queue.push_back(t);
+  queue.reserve(units.size());
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(units.size()); ++t) {
+    if (known[t]) queue.push_back(t);
   }
-  for (std::size_t i = 0; i < directions.size(); ++i) {
+  const auto add = [&](std::int32_t t, const Vec3& direction) {
+    units[t] = direction;
+    known[t] = true;
+    queue.push_back(t);
+  };
+  std::int32_t next_start = 0;
+  for (std::size_t i = 0; i < units.size(); ++i) {
     if (i == queue.size()) {
-      while (directions[next_start]) ++next_start;
-      const auto& [a, b, c] = mesh.triangles()[next_start];
-      directions[next_start] = (vector(mesh.vertices()[b]) - vector(mesh.vertices()[a])).normalized();
-      queue.push_back(next_start);
+      while (known[next_start]) ++next_start;
+      add(next_start, detail::vec3(unit_side(mesh, next_start, 0)));
     }
     const auto t = queue[i];
     for (int side = 0; side < 3; ++side) {
       const auto neighbour = mesh.neighbour(t, side).triangle;
-      if (neighbour < 0 || directions[neighbour]) continue;
-      directions[neighbour] = turned_about_side(mesh, t, side, *directions[t]);
-      queue.push_back(neighbour);
+      if (neighbour >= 0 && !known[neighbour]) add(neighbour, turned_about_side(mesh, t, side, units[t]));
     }
   }
-  std::vector<Vec3> spread;
-  spread.reserve(directions.size());
-  for (const auto& direction : directions) spread.push_back(detail::vec3(*direction));
-  return spread;
+  return std::move(units);
 }
 
 /// In mesh vertices; a hole's centre is none.
@@ -215,13 +225,13 @@ ReferenceFrame frame_of(const SurfaceMesh& mesh, const FilledSurface& filled, co
   ReferenceFrame frame;
   frame.u.assign(mesh.vertices().size(), nan);
   for (std::size_t i = 0; i < filled.mesh_vertices.size(); ++i) frame.u[filled.mesh_vertices[i]] = u.values[i];
-  const auto gradients = unit_gradients(mesh, frame.u);
+  const auto gradients = gradient_directions(mesh, frame.u);
   frame.longitudinal = spread(mesh, gradients);
   frame.transverse.reserve(mesh.triangle_count());
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const Vector normal = vector(mesh.triangle_normals()[t]);
     frame.transverse.push_back(detail::vec3(normal.cross(vector(frame.longitudinal[t]))));
-    if (!gradients[t]) frame.borrowed_triangles.push_back(static_cast<std::int32_t>(t));
+    if (!gradients.known[t]) frame.borrowed_triangles.push_back(static_cast<std::int32_t>(t));
   }
   frame.critical_points = critical_mesh_vertices(filled, u);
   return frame;
@@ -252,9 +262,9 @@ ReferenceFrame make_reference_frame(const SurfaceMesh& mesh, const Parameterizat
   if (options.inner_loop) check_inner_loop(mesh, *options.inner_loop, outer_loop);
   const auto filled = detail::fill_holes(mesh, outer_loop);
   const auto disk = disk_vertices(filled, parameterization);
-  auto imposed = imposed_values(mesh, filled, outer_loop, options);
+  const auto imposed = imposed_values(mesh, filled, outer_loop, options);
   const bool has_inner = options.inner_loop || options.inner_point;
-  return frame_of(mesh, filled, has_inner ? harmonic(std::move(imposed), filled, disk) : across_disk(imposed, disk));
+  return frame_of(mesh, filled, has_inner ? harmonic(imposed, filled, disk) : across_disk(imposed, disk));
 }
 
 std::vector<double> field_angles(const ReferenceFrame& frame, const OrientationField& field) {

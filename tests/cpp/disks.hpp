@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <set>
 #include <vector>
@@ -39,7 +40,24 @@ inline Soup hexagonal_disk(int rings) {
   return soup;
 }
 
-/// The same, its inner vertices moved by up to 0.2 of the rings' distance.
+/// Two such disks, mirror images that share one border edge.
+inline Soup twin_disks(int rings) {
+  Soup soup = hexagonal_disk(rings);
+  const detail::Vector a = detail::vector(soup.vertices[0]), b = detail::vector(soup.vertices[1]);
+  const detail::Vector across = (b - a).cross(detail::Vector::UnitZ()).normalized();
+  const auto count = static_cast<std::int32_t>(soup.vertices.size());
+  for (std::int32_t v = 2; v < count; ++v) {
+    const detail::Vector original = detail::vector(soup.vertices[v]);
+    soup.vertices.push_back(detail::vec3(original - 2 * (original - a).dot(across) * across));
+  }
+  const auto twin = [&](std::int32_t v) { return v < 2 ? v : v + count - 2; };
+  for (const auto triangles = soup.triangles; const auto& [p, q, r] : triangles) {
+    soup.triangles.push_back({twin(p), twin(r), twin(q)});
+  }
+  return soup;
+}
+
+/// The unit disk again, its inner vertices moved by up to 0.2 of the rings' distance.
 inline Soup jittered_disk(int rings, std::uint64_t seed) {
   Soup soup = hexagonal_disk(rings);
   Random random(seed);
@@ -49,8 +67,8 @@ inline Soup jittered_disk(int rings, std::uint64_t seed) {
   return soup;
 }
 
-/// Without the triangles around some inner vertices: `count` holes (fewer if there is no room) that share no vertex with
-/// one another or the border.
+/// Without the triangles around some inner vertices: `count` holes (fewer if there is no room) that share no vertex
+/// with one another or the border.
 inline Soup with_holes(Soup soup, std::size_t border_size, int count, std::uint64_t seed) {
   Random random(seed);
   std::set<std::int32_t> taken;
@@ -66,7 +84,8 @@ inline Soup with_holes(Soup soup, std::size_t border_size, int count, std::uint6
         around.insert(corners.begin(), corners.end());
       }
     }
-    if (around.empty() || std::any_of(around.begin(), around.end(), [&](auto v) { return taken.contains(v); })) continue;
+    if (around.empty() || std::any_of(around.begin(), around.end(), [&](auto v) { return taken.contains(v); }))
+      continue;
     taken.insert(around.begin(), around.end());
     soup.triangles = std::move(kept);
     --count;

@@ -196,18 +196,7 @@ TEST_CASE("parameterization: a single triangle" * doctest::skip(without_cgal)) {
 }
 
 TEST_CASE("parameterization: regions that one edge joins to the rest" * doctest::skip(without_cgal)) {
-  // Two disks with one border edge in common.
-  Soup soup = hexagonal_disk(4);
-  const Vector a = vector(soup.vertices[0]), b = vector(soup.vertices[1]);
-  const Vector across = (b - a).cross(Vector::UnitZ()).normalized();
-  const auto count = static_cast<std::int32_t>(soup.vertices.size());
-  const auto mirror = [&](const Vector& v) { return Vector(v - 2 * (v - a).dot(across) * across); };
-  for (std::int32_t v = 2; v < count; ++v) soup.vertices.push_back(detail::vec3(mirror(vector(soup.vertices[v]))));
-  const auto twin = [&](std::int32_t v) { return v < 2 ? v : v + count - 2; };
-  for (auto triangles = soup.triangles; const auto& [p, q, r] : triangles) {
-    soup.triangles.push_back({twin(p), twin(r), twin(q)});
-  }
-  const auto mesh = soup.mesh();
+  const auto mesh = twin_disks(6).mesh();
   REQUIRE(mesh.boundary_loops().size() == 1);
   check_map(mesh, parameterize(mesh));
 }

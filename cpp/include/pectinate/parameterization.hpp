@@ -15,7 +15,7 @@ using DiskPoint = std::array<double, 2>;
 
 struct ParameterizationOptions {
   /// Index into `mesh.boundary_loops()` of the loop that becomes the circle; the longest of the component when absent.
-  std::optional<std::int32_t> outer_loop;
+  std::optional<std::int32_t> outer_loop = std::nullopt;
 };
 
 /// How a triangle is stretched on its way to the disk.

@@ -12,9 +12,9 @@ namespace pectinate {
 
 struct ReferenceFrameOptions {
   /// Index into `mesh.boundary_loops()` of the inner loop, where u = 0 (paper: the fossa ovalis).
-  std::optional<std::int32_t> inner_loop;
+  std::optional<std::int32_t> inner_loop = std::nullopt;
   /// Where there is no such loop: u = 0 at the mapped vertex nearest to this point. At most one of the two is given.
-  std::optional<Vec3> inner_point;
+  std::optional<Vec3> inner_point = std::nullopt;
 };
 
 /// A vertex at which the gradient of a function vanishes.
