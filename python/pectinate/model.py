@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pectinate import _core
 from pectinate._core import DirectionStatus, OrientationField, SurfaceMesh
 from pectinate.errors import InvalidField, InvalidMesh
 
@@ -59,6 +61,8 @@ class SurfaceData:
         Number of all elements of the source; None where there are only triangles.
     notes
         What a reader decided or left out, one sentence each.
+    loop_points
+        For each named boundary loop a point (3,), mm: the name goes to the loop nearest to it.
     """
 
     vertices: NDArray[np.float64]
@@ -73,6 +77,7 @@ class SurfaceData:
     element_rows: NDArray[np.int64] | None = None
     element_count: int | None = None
     notes: tuple[str, ...] = ()
+    loop_points: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,6 +128,39 @@ class Model:
         """Second direction of each mesh triangle as given, (T, 3); None where the source has none."""
         return None if self.data.second_vectors is None else self.data.second_vectors[self.mesh.input_triangle]
 
+    @property
+    def loop_names(self) -> dict[str, int]:
+        """Index in `mesh.boundary_loops` of each named loop: the one nearest to its point in `data.loop_points`."""
+        if not self.mesh.boundary_loops:
+            return {}
+        points = self.data.loop_points
+        return {name: _core.nearest_boundary_loop(self.mesh, point) for name, point in points.items()}
+
+    def with_loop_points(self, points: Mapping[str, NDArray[np.float64]]) -> Model:
+        """Name more loops, each by a point (3,), mm, on it or near it; a name that is known gets the new point."""
+        return replace(self, data=replace(self.data, loop_points={**self.data.loop_points, **points}))
+
+    def with_field(self, field: OrientationField, note: str) -> Model:
+        """Replace the field of this mesh, and with it vectors, tensors and second vectors of the data.
+
+        Parameters
+        ----------
+        field
+            Of `mesh`; triangles of the source that the mesh does not have get zero vectors.
+        note
+            One sentence for `data.notes`: where the field comes from.
+        """
+        vectors = self.per_input_triangle(field.directions, missing=0.0)
+        notes = (*self.data.notes, note)
+        data = replace(self.data, vectors=vectors, tensors=None, vector_location="triangle", notes=notes)
+        return Model(self.mesh, field, replace(data, second_vectors=None))
+
+    def per_input_triangle(self, values: NDArray[np.float64], *, missing: float = np.nan) -> NDArray[np.float64]:
+        """Take values (T, ...) of mesh triangles to the triangles of the source; `missing` for those left out."""
+        result = np.full((self.mesh.input_triangle_count, *values.shape[1:]), missing)
+        result[self.mesh.input_triangle] = values
+        return result
+
     def summary(self) -> dict[str, Any]:
         """Everything worth knowing before streamlines are placed, ready for JSON.
 
@@ -142,8 +180,10 @@ class Model:
         }
 
     def _boundary_loops(self) -> list[dict[str, Any]]:
+        names = self.loop_names
         return [
             {
+                "names": [name for name, named in names.items() if named == index],
                 "vertices": len(loop.vertices),
                 "length": float(loop.length),
                 "diameter": float(loop.diameter),
@@ -151,7 +191,9 @@ class Model:
                 "component": int(loop.component),
                 "tags": tags,
             }
-            for loop, tags in zip(self.mesh.boundary_loops, _loop_tags(self.mesh, self.tags), strict=True)
+            for index, (loop, tags) in enumerate(
+                zip(self.mesh.boundary_loops, _loop_tags(self.mesh, self.tags), strict=True)
+            )
         ]
 
     def _area_per_tag(self) -> dict[str, float] | None:

@@ -90,7 +90,8 @@ def _component(component: dict[str, Any]) -> str:
 def _loop(loop: dict[str, Any]) -> str:
     centroid = ", ".join(f"{x:.1f}" for x in loop["centroid"])
     tags = "" if loop["tags"] is None else f", tags {', '.join(map(str, loop['tags']))}"
-    return f"length {loop['length']:.2f} mm, diameter {loop['diameter']:.2f} mm, at ({centroid}){tags}"
+    names = "".join(f"{name}: " for name in loop["names"])
+    return f"{names}length {loop['length']:.2f} mm, diameter {loop['diameter']:.2f} mm, at ({centroid}){tags}"
 
 
 def _listing(label: str, lines: list[str]) -> list[Row]:
