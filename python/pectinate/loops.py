@@ -12,7 +12,7 @@ from pectinate import _core
 from pectinate.errors import InvalidOption
 from pectinate.model import Model
 
-#: An index into `mesh.boundary_loops`, a name in `Model.loop_names`, or a point (3,), mm, of which the nearest is meant.
+#: An index into `mesh.boundary_loops`, a name in `Model.loop_names`, or a point (3,), mm: the loop nearest to it.
 LoopChoice: TypeAlias = "int | str | Sequence[float] | NDArray[np.float64]"
 
 _COORDINATES = 3
