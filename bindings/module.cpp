@@ -12,6 +12,7 @@ PYBIND11_MODULE(_core, module) {
   bind_reference_frame(module);
   bind_constraints(module);
   bind_interpolation(module);
+  bind_smoothing(module);
   bind_placement(module);
   bind_tubes(module);
   bind_demo_atrium(module);

@@ -15,6 +15,7 @@ void bind_placement(pybind11::module_& module);
 void bind_tubes(pybind11::module_& module);
 void bind_field_topology(pybind11::module_& module);
 void bind_interpolation(pybind11::module_& module);
+void bind_smoothing(pybind11::module_& module);
 void bind_demo_atrium(pybind11::module_& module);
 
 }  // namespace pectinate::bindings

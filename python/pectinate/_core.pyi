@@ -160,6 +160,12 @@ class ReferenceFrame:
     borrowed_triangles: _Ints
     critical_points: _Ints
 
+class Smoothing:
+    field: OrientationField
+    moved_angles: _Floats
+    iterations: int
+    converged: bool
+
 class PlacementMethod(Enum):
     random = 0
     neighborhood = 1
@@ -262,6 +268,16 @@ def make_reference_frame(
 ) -> ReferenceFrame: ...
 def field_angles(frame: ReferenceFrame, field: OrientationField) -> _Floats: ...
 def field_from_angles(mesh: SurfaceMesh, frame: ReferenceFrame, angles: _Numbers) -> OrientationField: ...
+def smooth(
+    mesh: SurfaceMesh,
+    field: OrientationField,
+    *,
+    length: float = ...,
+    outlier_angle: float = ...,
+    max_iterations: int = ...,
+    fill_missing: bool = ...,
+    barriers: Sequence[int] | _Ints | None = None,
+) -> Smoothing: ...
 def place_streamlines(
     mesh: SurfaceMesh,
     field: OrientationField,

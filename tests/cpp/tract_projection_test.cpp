@@ -116,6 +116,7 @@ TEST_CASE("of equally near triangles the first is the nearest") {
   Random random(2);
   for (const auto& soup : {grid(5, 4), sphere(2), tetrahedron(), mapped(sphere(3), some_turn)}) {
     const auto mesh = soup.mesh();
+    const TractProjector projector(mesh);
     for (std::size_t e = 0; e < mesh.edges().size(); ++e) {
       const auto [a, b] = mesh.edges()[e];
       const auto sides = mesh.edge_triangles(static_cast<std::int32_t>(e));
@@ -124,12 +125,12 @@ TEST_CASE("of equally near triangles the first is the nearest") {
       const Vector outside = point + 1e-3 * (vector(mesh.triangle_normals()[sides.front()]) +
                                              vector(mesh.triangle_normals()[sides.back()]));
       for (const Vector& place : {point, outside}) {
-        const auto nearest = nearest_surface_points(mesh, std::vector{vec3(place)})[0];
+        const auto nearest = projector.nearest_surface_points(std::vector{vec3(place)})[0];
         CHECK(nearest.triangle == *std::min_element(sides.begin(), sides.end()));
       }
     }
     for (std::size_t v = 0; v < mesh.vertices().size(); ++v) {
-      const auto nearest = nearest_surface_points(mesh, std::vector{mesh.vertices()[v]})[0];
+      const auto nearest = projector.nearest_surface_points(std::vector{mesh.vertices()[v]})[0];
       const auto holds = [&](const Triangle& t) {
         return std::find(t.begin(), t.end(), static_cast<std::int32_t>(v)) != t.end();
       };
@@ -213,6 +214,7 @@ TEST_CASE("projection: the given points are on the curve, in their order") {
 TEST_CASE("projection: in a plane it is the polyline itself") {
   Random random(5);
   const auto mesh = jittered_grid(15, 15).mesh();
+  const TractProjector projector(mesh);
   for (int i = 0; i < 50; ++i) {
     std::vector<Vec3> given(5);
     for (auto& point : given) point = {0.1 + 14.8 * random.unit(), 0.1 + 14.8 * random.unit(), 0};
@@ -224,7 +226,7 @@ TEST_CASE("projection: in a plane it is the polyline itself") {
     for (std::size_t k = 1; k < given.size(); ++k) {
       for (int j = 0; j <= 100; ++j) {
         const Vector point = (1 - 0.01 * j) * vector(given[k - 1]) + 0.01 * j * vector(given[k]);
-        const auto t = nearest_surface_points(mesh, std::vector{vec3(point)})[0].triangle;
+        const auto t = projector.nearest_surface_points(std::vector{vec3(point)})[0].triangle;
         if (barycentric(mesh, t, point).minCoeff() > 1e-9) CHECK(crossed.contains(t));
       }
     }

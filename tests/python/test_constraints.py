@@ -84,8 +84,8 @@ def test_the_projector_does_as_the_functions_and_keeps_its_mesh() -> None:
     constraints, expected = projector.make_constraints(tracts), _core.make_constraints(flat(), tracts)
     assert constraints.triangles.tolist() == expected.triangles.tolist()
     assert constraints.directions.tolist() == expected.directions.tolist()
-    found, nearest, distances = projector.nearest_surface_points(np.array([[0.2, 0.1, 3.0]]))
-    assert (found.tolist(), nearest.tolist(), distances.tolist()) == ([0], [[0.2, 0.1, 0]], [3])
+    found, nearest, distances = projector.nearest_surface_points(np.array([[0.5, 0.25, 3.0]]))
+    assert (found.tolist(), nearest.tolist(), distances.tolist()) == ([0], [[0.5, 0.25, 0]], [3])
 
 
 def test_the_nearest_boundary_loop() -> None:

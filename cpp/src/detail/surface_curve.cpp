@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -38,7 +39,7 @@ struct Plane {
   bool cuts(std::int32_t t, int side) const {
     return (height(corner(t, side)) >= 0) != (height(corner(t, side + 1)) >= 0);
   }
-  /// The side through which a cut that comes in through `entry` goes out; any that is cut if `entry` is none.
+  /// The side through which a cut that comes in through `entry` goes out; the first that is cut if `entry` is none.
   std::optional<int> exit(std::int32_t t, int entry) const {
     for (int side = 0; side < 3; ++side) {
       if (side != entry && cuts(t, side)) return side;
@@ -110,10 +111,16 @@ std::optional<std::vector<CurvePiece>> cut_by_normal_plane(const SurfaceMesh& me
   const Vector normal = axis.cross(up), true_normal = (b.point - a.point).cross(up);
   if (!(normal.norm() > least_normal_share * axis.norm())) return std::nullopt;
   const Plane plane{mesh, origin, normal.normalized(), true_normal.normalized()};
+  const auto first = plane.exit(a.triangle, -1);
+  if (!first) return std::nullopt;
+  // The way that leads towards `b` comes first: it bounds the other, which may lead far around.
+  std::array<int, 2> ways{*first, plane.exit(a.triangle, *first).value_or(*first)};
+  if ((plane.crossing(a.triangle, ways[0]) - plane.crossing(a.triangle, ways[1])).dot(axis) < 0) {
+    std::swap(ways[0], ways[1]);
+  }
   std::optional<std::vector<CurvePiece>> best;
   double least = std::numeric_limits<double>::infinity();
-  for (int side = 0; side < 3; ++side) {
-    if (!plane.cuts(a.triangle, side)) continue;
+  for (const int side : ways) {
     auto pieces = follow(plane, a, b, side, least);
     if (!pieces) continue;
     const double length = curve_length(a.point, *pieces);
