@@ -166,6 +166,11 @@ class Smoothing:
     iterations: int
     converged: bool
 
+class Transfer:
+    field: OrientationField
+    source_triangles: _Ints
+    distances: _Floats
+
 class PlacementMethod(Enum):
     random = 0
     neighborhood = 1
@@ -278,6 +283,23 @@ def smooth(
     fill_missing: bool = ...,
     barriers: Sequence[int] | _Ints | None = None,
 ) -> Smoothing: ...
+def angles_between(first: OrientationField, second: OrientationField) -> _Floats: ...
+def add_angular_noise(
+    mesh: SurfaceMesh, field: OrientationField, *, standard_deviation: float, random_seed: int = ...
+) -> OrientationField: ...
+def vertex_directions(mesh: SurfaceMesh, field: OrientationField) -> _Floats: ...
+def transfer_by_nearest_point(
+    source: SurfaceMesh, field: OrientationField, target: SurfaceMesh, *, maximum_distance: float
+) -> Transfer: ...
+def transfer_through_disks(
+    source: SurfaceMesh,
+    source_disk: Parameterization,
+    field: OrientationField,
+    target: SurfaceMesh,
+    target_disk: Parameterization,
+    *,
+    loop_pairs: Sequence[Sequence[int]] | _Numbers,
+) -> Transfer: ...
 def place_streamlines(
     mesh: SurfaceMesh,
     field: OrientationField,

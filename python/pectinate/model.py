@@ -136,6 +136,18 @@ class Model:
         points = self.data.loop_points
         return {name: _core.nearest_boundary_loop(self.mesh, point) for name, point in points.items()}
 
+    def require_field(self) -> OrientationField:
+        """Return the field.
+
+        Raises
+        ------
+        InvalidField
+            There is none.
+        """
+        if self.field is None:
+            raise InvalidField(f"{self.data.source} has no orientation field; give one with load(..., field=...)")
+        return self.field
+
     def with_loop_points(self, points: Mapping[str, NDArray[np.float64]]) -> Model:
         """Name more loops, each by a point (3,), mm, on it or near it; a name that is known gets the new point."""
         return replace(self, data=replace(self.data, loop_points={**self.data.loop_points, **points}))
@@ -154,6 +166,22 @@ class Model:
         notes = (*self.data.notes, note)
         data = replace(self.data, vectors=vectors, tensors=None, vector_location="triangle", notes=notes)
         return Model(self.mesh, field, replace(data, second_vectors=None))
+
+    def vertex_directions(self) -> NDArray[np.float64]:
+        """Average the field per vertex of the source, (V, 3): unit lines, by the tensors of the triangles around.
+
+        Zero where no triangle around has a direction. A vertex where the mesh was cut gets that of its first fan.
+
+        Raises
+        ------
+        InvalidField
+            There is no field.
+        """
+        directions = _core.vertex_directions(self.mesh, self.require_field())
+        vertices, first = np.unique(self.mesh.input_vertex, return_index=True)
+        result = np.zeros((self.mesh.input_vertex_count, 3))
+        result[vertices] = directions[first]
+        return result
 
     def per_input_triangle(self, values: NDArray[np.float64], *, missing: float = np.nan) -> NDArray[np.float64]:
         """Take values (T, ...) of mesh triangles to the triangles of the source; `missing` for those left out."""

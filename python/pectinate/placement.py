@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
 from pectinate import _core
-from pectinate.errors import InvalidField, InvalidFile, InvalidOption
+from pectinate.errors import InvalidFile, InvalidOption
 from pectinate.io import load, streamlines
 from pectinate.model import Model
 from pectinate.statistics import PlacementStatistics
@@ -104,13 +104,12 @@ def place_streamlines(
         An unknown option.
     """
     model = load(surface)
-    if model.field is None:
-        raise InvalidField(f"{model.data.source} has no orientation field; give one with load(..., field=...)")
+    field = model.require_field()
     for name in _ENUMERATIONS.keys() & options.keys():
         options[name] = _member(name, options[name])
     if np.ndim(options.get("separation_distance", 0.0)) > 0:
         options["separation_distances"] = _per_mesh_triangle(model, options.pop("separation_distance"))
-    return Placement(model, _core.place_streamlines(model.mesh, model.field, progress=progress, **options))
+    return Placement(model, _core.place_streamlines(model.mesh, field, progress=progress, **options))
 
 
 def _member(name: str, value: Any) -> Enum:
@@ -185,8 +184,7 @@ class Placement:
     @property
     def field(self) -> _core.OrientationField:
         """The orientation field that the streamlines follow."""
-        assert self.model.field is not None
-        return self.model.field
+        return self.model.require_field()
 
     def __len__(self) -> int:
         """Count the streamlines."""
