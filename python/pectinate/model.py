@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
 from pectinate._core import DirectionStatus, OrientationField, SurfaceMesh
 from pectinate.errors import InvalidField, InvalidMesh
+from pectinate.figure.files import check_picture_path, save_picture
+from pectinate.figure.sheet import draw_sheet
 
 if TYPE_CHECKING:
     from pectinate.io.units import UnitDecision
@@ -122,6 +126,24 @@ class Model:
     def second_vectors(self) -> NDArray[np.float64] | None:
         """Second direction of each mesh triangle as given, (T, 3); None where the source has none."""
         return None if self.data.second_vectors is None else self.data.second_vectors[self.mesh.input_triangle]
+
+    def figure(self, path: str | os.PathLike[str] | None = None, **sheet_options: Any) -> Image.Image:
+        """Draw the surface without streamlines, in one or several views, such as for a map of values on it.
+
+        Parameters
+        ----------
+        path
+            Where to write the picture; by default nowhere.
+        sheet_options
+            Of `pectinate.figure.draw_sheet`: `surface_values` (per triangle or vertex of `mesh`), `layers`, ...
+
+        Raises
+        ------
+        InvalidOption, InvalidFile, RenderingUnavailable, MissingDependency
+            As `Placement.figure`.
+        """
+        check_picture_path(path)
+        return save_picture(draw_sheet((self.mesh.vertices, self.mesh.triangles), **sheet_options), path)
 
     def summary(self) -> dict[str, Any]:
         """Everything worth knowing before streamlines are placed, ready for JSON.
