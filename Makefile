@@ -101,7 +101,7 @@ $(STAMPS)/environment: | system
 
 $(STAMPS)/requirements: pyproject.toml .ci/requirements $(STAMPS)/environment
 	@echo "installing what pectinate needs into $(VENV)"
-	@$(BIN)/python .ci/requirements vtk test >$@.txt
+	@$(BIN)/python .ci/requirements vtk figures test >$@.txt
 	@$(PIP_INSTALL) -r $@.txt
 	@touch $@
 

@@ -33,6 +33,6 @@ def demo_atrium(*, edge_length: float = 1.0) -> Model:
         vectors=atrium.directions,
         tags=atrium.regions.astype("int64"),
         notes=tuple(f"tag {tag} is the {name}" for tag, name in enumerate(atrium.region_names)),
-        loop_points={loop.name: atrium.vertices[loop.vertices[0]] for loop in atrium.loops},
+        loop_points={loop.name.replace("_", " "): atrium.vertices[loop.vertices[0]] for loop in atrium.loops},
     )
     return Model.from_data(data)
