@@ -11,10 +11,12 @@ from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from PIL import Image
 
 from pectinate import _core
 from pectinate.angle_statistics import angle_statistics, angle_statistics_per_region
 from pectinate.errors import InvalidField, InvalidOption
+from pectinate.figure.values import SurfaceValues
 from pectinate.io import load, save_surface
 from pectinate.loops import LoopChoice, find_loop
 from pectinate.model import Model
@@ -59,6 +61,24 @@ class Comparison:
             As in `save_surface`.
         """
         return save_surface(self.model, path, cell_data={"angle": self.angles}, **options)
+
+    def figure(self, path: str | os.PathLike[str] | None = None, **sheet_options: Any) -> Image.Image:
+        """Draw the surface coloured by the angle, in degrees.
+
+        Parameters
+        ----------
+        path
+            Where to write the picture; by default nowhere.
+        sheet_options
+            Of `pectinate.figure.draw_sheet`.
+
+        Raises
+        ------
+        InvalidOption, InvalidFile, RenderingUnavailable, MissingDependency
+            As `Placement.figure`.
+        """
+        values = SurfaceValues(np.degrees(self.angles), value_range=(0, 90), label="angle, degrees")
+        return self.model.figure(path, **{"surface_values": values, **sheet_options})
 
     def report(self) -> dict[str, Any]:
         """Statistics of the angles, of all triangles and per region, ready for JSON; in degrees, distances in mm."""

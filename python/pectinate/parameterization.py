@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from PIL import Image
 
 from pectinate import _core
 from pectinate.errors import InvalidOption
+from pectinate.figure.disk import draw_disk
 from pectinate.io import load
 from pectinate.loops import LoopChoice, find_loop
 from pectinate.model import Model
@@ -51,6 +54,24 @@ class DiskMap:
     def u(self) -> NDArray[np.float64]:
         """u_D at the vertices of the mesh, (V,), from 0 inside to 1 at the outer loop; NaN on fragments."""
         return self.frame.u
+
+    def figure(self, path: str | os.PathLike[str] | None = None, **options: Any) -> Image.Image:
+        """Draw the disk coloured by u_D, with its holes and their names (paper, Fig. 3A).
+
+        Parameters
+        ----------
+        path
+            Where to write the picture; by default nowhere.
+        options
+            Of `pectinate.figure.draw_disk`.
+
+        Raises
+        ------
+        InvalidOption, InvalidFile, MissingDependency
+            As in `draw_disk`.
+        """
+        names = {loop: name for name, loop in self.model.loop_names.items()}
+        return draw_disk(self.parameterization, self.frame, self.model.mesh, path, **{"loop_names": names, **options})
 
     def report(self) -> dict[str, Any]:
         """Everything worth knowing about the map, ready for JSON; indices are those of the source."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from dataclasses import dataclass
 from pathlib import Path
@@ -35,7 +36,7 @@ class SmoothedField:
     converged
         Whether they came to rest.
     options
-        What was asked for, as given.
+        What was asked for; the library's defaults for the rest.
     """
 
     model: Model
@@ -61,8 +62,11 @@ class SmoothedField:
 
     def report(self) -> dict[str, Any]:
         """How far fibres were moved, of all triangles and per region tag, ready for JSON; angles in degrees."""
+        options = self.options
+        if "outlier_angle" in options:
+            options = options | {"outlier_angle": math.degrees(options["outlier_angle"])}
         return {
-            "options": self.options,
+            "options": options,
             "moved": angle_statistics(self.moved_angles),
             "moved_per_region": angle_statistics_per_region(self.moved_angles, self.model.tags),
             "iterations": self.iterations,
