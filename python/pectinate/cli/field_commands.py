@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -39,11 +40,11 @@ def interpolate(arguments: argparse.Namespace) -> None:
     started = time.perf_counter()
     result = pectinate.interpolate(model, arguments.tracts, **given(arguments, _INTERPOLATION))
     seconds = time.perf_counter() - started
-    _save(result, arguments)
+    written = _save(result, arguments)
     _draw_streamlines(result, arguments)
     found = result.report()
     rows = field_report.interpolation_rows(found)
-    _print(arguments, rows, {"surface": result.model.summary(), "interpolation": found, "seconds": seconds})
+    _print(arguments, rows, {"surface": result.model.summary(), "interpolation": found, "seconds": seconds}, written)
 
 
 def parameterize(arguments: argparse.Namespace) -> None:
@@ -69,11 +70,11 @@ def smooth(arguments: argparse.Namespace) -> None:
     started = time.perf_counter()
     result = pectinate.smooth(model, **given(arguments, _SMOOTHING))
     seconds = time.perf_counter() - started
-    _save(result, arguments)
+    written = _save(result, arguments)
     _draw_streamlines(result, arguments)
     found = result.report()
     rows = field_report.smoothing_rows(found)
-    _print(arguments, rows, {"surface": model.summary(), "smoothing": found, "seconds": seconds})
+    _print(arguments, rows, {"surface": model.summary(), "smoothing": found, "seconds": seconds}, written)
 
 
 def compare(arguments: argparse.Namespace) -> None:
@@ -82,25 +83,25 @@ def compare(arguments: argparse.Namespace) -> None:
     models = [load_surface(arguments, path) for path in (arguments.first, arguments.second)]
     outer_loops = (arguments.outer_first, arguments.outer_second)
     result = pectinate.compare(*models, outer_loops=outer_loops, **given(arguments, _COMPARISON))
-    _save(result, arguments)
+    written = _save(result, arguments)
     if arguments.figure is not None:
         with writing():
             result.figure(arguments.figure, **given(arguments, {"views": "views"}))
     found = result.report()
-    _print(arguments, field_report.comparison_rows(found), {"comparison": found})
+    _print(arguments, field_report.comparison_rows(found), {"comparison": found}, written)
 
 
 def _check_outputs(arguments: argparse.Namespace) -> None:
     """Refuse what cannot be written before any long work."""
     check_suffixes("--out", arguments.outputs, _SUFFIXES)
     check_figure(arguments)
-    check_folders(_files(arguments))
+    check_folders(arguments.outputs if arguments.figure is None else [*arguments.outputs, arguments.figure])
 
 
-def _save(result: InterpolatedField | SmoothedField | Comparison, arguments: argparse.Namespace) -> None:
+def _save(result: InterpolatedField | SmoothedField | Comparison, arguments: argparse.Namespace) -> list[Path]:
+    options = given(arguments, {"second": "second", "per_vertex": "per_vertex"})
     with writing():
-        for path in arguments.outputs:
-            result.save(path, **given(arguments, {"second": "second", "per_vertex": "per_vertex"}))
+        return [file for path in arguments.outputs for file in result.save(path, **options)]
 
 
 def _draw_streamlines(result: InterpolatedField | SmoothedField, arguments: argparse.Namespace) -> None:
@@ -113,12 +114,11 @@ def _draw_streamlines(result: InterpolatedField | SmoothedField, arguments: argp
             placement.figure(arguments.figure, **given(arguments, {"views": "views"}))
 
 
-def _files(arguments: argparse.Namespace) -> list[Path]:
-    return [*arguments.outputs, *([] if arguments.figure is None else [arguments.figure])]
-
-
-def _print(arguments: argparse.Namespace, rows: list[report.Row], found: dict[str, Any]) -> None:
-    files = [str(path) for path in _files(arguments)]
+def _print(
+    arguments: argparse.Namespace, rows: list[report.Row], found: dict[str, Any], written: Sequence[Path] = ()
+) -> None:
+    pictures = [] if arguments.figure is None else [arguments.figure]
+    files = [str(path) for path in (*written, *pictures)]
     if arguments.json:
         report.print_json(found | {"files": files})
     elif not arguments.quiet:

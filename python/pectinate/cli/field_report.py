@@ -19,7 +19,7 @@ def interpolation_rows(found: dict[str, Any]) -> list[Row]:
         *listing("tract", [_tract(tract) for tract in found["tracts"]]),
         *(("boundary", f"loop {one['loop']}: {one['rule']}") for one in found["boundary"]),
         *(("conflict", _conflict(one)) for one in found["conflicts"]),
-        *listing("singularity", singularities),
+        *listing("singular point", singularities),
         ("energy", f"{found['energy']:.4g}"),
         (
             "confidence",
