@@ -13,6 +13,7 @@ PYBIND11_MODULE(_core, module) {
   bind_constraints(module);
   bind_interpolation(module);
   bind_smoothing(module);
+  bind_comparison(module);
   bind_placement(module);
   bind_tubes(module);
   bind_demo_atrium(module);

@@ -16,6 +16,7 @@ void bind_tubes(pybind11::module_& module);
 void bind_field_topology(pybind11::module_& module);
 void bind_interpolation(pybind11::module_& module);
 void bind_smoothing(pybind11::module_& module);
+void bind_comparison(pybind11::module_& module);
 void bind_demo_atrium(pybind11::module_& module);
 
 }  // namespace pectinate::bindings
