@@ -203,10 +203,10 @@ def core_conditions(model: Model, conditions: tuple[BoundaryCondition, ...]) -> 
 def _points(values: ArrayLike, name: str) -> NDArray[np.float64]:
     try:
         points = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        points = np.empty(0)
-    if points.ndim != 2 or points.shape[1] != 3 or len(points) < _LEAST_POINTS:  # noqa: PLR2004
-        raise InvalidOption(f"tract {name!r} has points of the shape {np.shape(values)}; give (n, 3), at least two, mm")
+    except (TypeError, ValueError) as error:
+        raise InvalidOption(f"the points of tract {name!r} are no numbers, (n, 3) ({error})") from error
+    if points.shape[1:] != (3,) or len(points) < _LEAST_POINTS:
+        raise InvalidOption(f"tract {name!r} has points of the shape {points.shape}; give (n, 3), at least two, mm")
     if not np.isfinite(points).all():
         row = int(np.argmin(np.isfinite(points).all(axis=1)))
         raise InvalidOption(f"tract {name!r}: point {row} is {points[row].tolist()}; use finite numbers")

@@ -132,7 +132,9 @@ def _add_files(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="surface and field: .lon (with .pts and .elem), .vtp, .vtu or .vtk; may be repeated",
     )
-    group.add_argument("--second", metavar="KIND", help="second vectors: none, transverse or normal")
+    group.add_argument(
+        "--second", dest="second_vectors", metavar="KIND", help="second vectors: none, transverse or normal"
+    )
     group.add_argument("--per-vertex", action="store_true", help="VTK files get the field per vertex too")
 
 

@@ -99,7 +99,7 @@ def _check_outputs(arguments: argparse.Namespace) -> None:
 
 
 def _save(result: InterpolatedField | SmoothedField | Comparison, arguments: argparse.Namespace) -> list[Path]:
-    options = given(arguments, {"second": "second", "per_vertex": "per_vertex"})
+    options = given(arguments, {"second_vectors": "second", "per_vertex": "per_vertex"})
     with writing():
         return [file for path in arguments.outputs for file in result.save(path, **options)]
 
