@@ -78,7 +78,7 @@ def test_by_the_nearest_point():
     np.testing.assert_allclose(np.degrees(result.angles), 30, atol=1e-9)
     np.testing.assert_allclose(result.distances, 0, atol=1e-12)
     vertices, triangles = grid(12, 12)
-    above = with_angle((vertices + [0, 0, 1.5], triangles), 50)
+    above = with_angle((vertices + np.array([0, 0, 1.5]), triangles), 50)
     report = compare(coarse, above, how="nearest").report()
     assert report["distances"] == {"median": pytest.approx(1.5), "greatest": pytest.approx(1.5)}
     with pytest.raises(InvalidOption, match="maximum_distance"):
@@ -91,7 +91,8 @@ def test_through_the_disks():
     large = with_angle(with_hole(24, 3.0), 50).with_loop_points({"hole": 3 * names["hole"]})
     for pairs in (None, [("hole", "hole")], [((0.6, 0.5, 0), "hole")]):
         angles = np.degrees(compare(small, large, how="disks", loop_pairs=pairs).angles)
-        assert np.median(np.abs(angles - 30)) < 2
+        assert np.mean(np.isnan(angles)) < 0.01  # the holes are not the same to a triangle
+        assert np.nanpercentile(np.abs(angles - 30), 90) < 3
     with pytest.raises(InvalidOption, match="same name"):
         compare(small, with_angle(with_hole(24, 3.0), 50), how="disks")
     with pytest.raises(InvalidOption, match="'window'"):
@@ -104,7 +105,7 @@ def test_surfaces_must_be_the_same_or_have_a_disk():
     with pytest.raises(InvalidField, match="not the same triangles"):
         compare(with_angle(grid(), 0), with_angle(grid(5, 3), 0))
     vertices, triangles = grid()
-    moved = vertices + [0, 0, 0.01]
+    moved = vertices + np.array([0, 0, 0.01])
     with pytest.raises(InvalidField, match="nearest"):
         compare(with_angle(grid(), 0), with_angle((moved, triangles), 0))
     for mesh in (octahedron(), two_components()):
