@@ -26,6 +26,9 @@ METHODS: tuple[Method, ...] = ("connection", "reference_frame")
 def interpolate(surface: Any, tracts: TractSet | str | os.PathLike[str], **options: Any) -> InterpolatedField:
     """Interpolate an orientation field from tracts and boundary conditions (paper section 2.3).
 
+    Everywhere between them the phase exp(2 i theta) is as smooth as can be; a component of the surface without any gets
+    the smoothest field that it can have.
+
     Parameters
     ----------
     surface
@@ -113,8 +116,6 @@ class FieldEditor:
         self._notes = _surface_notes(self._drawn_on, identity)
         self._projector = _core.TractProjector(self.model.mesh)
         self._interpolator = self._make_interpolator()
-        self._tracts: dict[int, Tract] = {}
-        self._next_number = 0
         conditions = core_conditions(self.model, given.boundary)
         self._adopt(
             dict(enumerate(given.tracts)),

@@ -161,7 +161,10 @@ def test_demo_writes_streamlines_and_picture(tmp_path, capsys):
     ],
 )
 def test_errors_are_one_line_and_a_code(square, tmp_path, capsys, words, code, said):
-    names = {"SQUARE": str(square), "FOLDER": str(tmp_path)}
+    check_error({"SQUARE": str(square), "FOLDER": str(tmp_path)}, capsys, words, code, said)
+
+
+def check_error(names, capsys, words, code, said):
     for name, path in names.items():
         words = [word.replace(name, path) for word in words]
     assert main(words) == code
@@ -310,9 +313,9 @@ def test_interpolate_draws(square, tracts, tmp_path):
 def test_parameterize_reports_the_disk(square, tracts, tmp_path, capsys):
     pytest.importorskip("matplotlib")
     picture = tmp_path / "disk.png"
-    words = ["--tracts", tracts, "--outer", "border", "--inner-point", "6,6,0", "--figure", picture]
+    words = ["--tracts", tracts, "--outer", "border", "--inner-point=6,6,-0.1", "--figure", picture]
     report = run_json(capsys, "parameterize", square, *words)
-    assert report["disk"] == pectinate.parameterize(square, outer_loop=0, inner_point=(6, 6, 0)).report()
+    assert report["disk"] == pectinate.parameterize(square, outer_loop=0, inner_point=(6, 6, -0.1)).report()
     assert report["files"] == [str(picture)]
     assert picture.read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
     assert main(["parameterize", str(square)]) == ExitCode.DONE
@@ -355,7 +358,7 @@ def test_info_names_loops(square, tracts, capsys):
 @pytest.mark.parametrize(
     ("words", "code", "said"),
     [
-        (["interpolate", "SQUARE"], ExitCode.USAGE, "TRACTS"),
+        (["interpolate", "SQUARE"], ExitCode.USAGE, "required: TRACTS"),
         (["interpolate", "SQUARE", "TRACTS", "--method", "magic"], ExitCode.USAGE, "magic"),
         (["interpolate", "SQUARE", "TRACTS", "--outer", "valve"], ExitCode.USAGE, "valve"),
         (["interpolate", "SQUARE", "TRACTS", "--outer", "7"], ExitCode.USAGE, "loop 7"),
@@ -378,6 +381,5 @@ def test_info_names_loops(square, tracts, capsys):
     ],
 )
 def test_errors_of_the_commands_on_fields(square, tracts, tmp_path, capsys, words, code, said):
-    test_errors_are_one_line_and_a_code(
-        square, tmp_path, capsys, [word.replace("TRACTS", str(tracts)) for word in words], code, said
-    )
+    names = {"SQUARE": str(square), "FOLDER": str(tmp_path), "TRACTS": str(tracts)}
+    check_error(names, capsys, words, code, said)

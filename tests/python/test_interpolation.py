@@ -317,6 +317,22 @@ def test_the_inner_point_is_where_u_is_zero():
         parameterize(model, inner_point=[math.nan, 0, 0])
 
 
+def test_a_measured_atrium_from_its_borders_alone(human_atrium):
+    model = pectinate.load(human_atrium / "la_epi", field=None)
+    names = {f"loop {i}": np.array(loop.centroid) for i, loop in enumerate(model.mesh.boundary_loops)}
+    boundary = [BoundaryCondition(name, "parallel") for name in names]
+    result = interpolate(model, TractSet(boundary=boundary, loops=names))
+    report = result.report()
+    assert result.model.loop_names == {f"loop {i}": i for i in range(5)}
+    assert report["conflicts"] == []
+    # Where a border is jagged, half a turn may be at a spike of it instead of at a singular point beside it.
+    turns = sum(one["index"] for one in report["singularities"]) + sum(report["loop_turns"])
+    assert turns == model.mesh.components[0].euler_characteristic == -3
+    along = result.constraints
+    cosines = lines_agree(result.field.directions[along.triangles], along.directions)
+    np.testing.assert_allclose(cosines, 1, rtol=0, atol=1e-12)
+
+
 def field_model() -> Model:
     return interpolate(flat(), TractSet([line((1, 1), (4, 5), (11, 7))])).model
 

@@ -53,7 +53,7 @@ def test_outliers_are_brought_back():
 
 def test_tags_are_barriers():
     model = square()
-    vectors = np.where(left(model)[:, None], [1.0, 0, 0], [0, 1.0, 0])
+    vectors = np.where(left(model)[:, None], [1.0, 0, 0], [0.5, math.sqrt(0.75), 0])
     kept = smooth(square(vectors), length=3, barriers="tags").moved_angles
     np.testing.assert_allclose(kept, 0, atol=1e-6)
     assert np.degrees(smooth(square(vectors), length=3).moved_angles.max()) > 5

@@ -136,6 +136,36 @@ def test_what_is_no_json_is_refused(tmp_path, text, said):
         read_tracts(path)
 
 
+keys = st.sampled_from(["points", "name", "weight", "loop", "rule", "source", "description"]) | st.text(max_size=2)
+json_values = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=3),
+    lambda inner: st.lists(inner, max_size=4) | st.dictionaries(keys, inner, max_size=4),
+    max_leaves=12,
+)
+
+
+@settings(max_examples=150, deadline=None)
+@given(st.dictionaries(st.sampled_from(["tracts", "boundary", "loops", "surface", "units"]), json_values))
+def test_whatever_a_file_holds_is_read_or_refused(tmp_path_factory, parts):
+    path = tmp_path_factory.mktemp("tracts") / "t.json"
+    path.write_text(json.dumps(HEAD | parts))
+    try:
+        drawn = read_tracts(path)
+    except InvalidFile as error:
+        assert str(error).startswith(str(path))
+    else:
+        drawn.save(path)
+        assert same(read_tracts(path), drawn)
+
+
+def test_names_that_are_no_text_survive(tmp_path):
+    path = tmp_path / "t.json"
+    path.write_text('{"format": "pectinate tracts", "version": 1, "loops": {"\\ud800": [1, 2, 3]}}')
+    drawn = read_tracts(path)
+    drawn.save(path)
+    assert list(read_tracts(path).loops) == list(drawn.loops) == ["\ud800"]
+
+
 def test_missing_and_unwritable_files(tmp_path):
     with pytest.raises(InvalidFile, match="no such file"):
         read_tracts(tmp_path / "none.json")

@@ -109,7 +109,9 @@ def _add_compare(subparsers: argparse._SubParsersAction[Parser]) -> None:
 def _add_frame(group: argparse._ArgumentGroup) -> None:
     group.add_argument("--outer", type=loop, metavar="LOOP", help=f"loop that becomes the circle: {_LOOP}")
     group.add_argument("--inner", type=loop, metavar="LOOP", help="loop where u is 0, such as the fossa ovalis")
-    group.add_argument("--inner-point", type=point, metavar="X,Y,Z", help="mm; where there is no such loop")
+    group.add_argument(
+        "--inner-point", type=point, metavar="X,Y,Z", help="mm; where there is no such loop (--inner-point=-1,2,3)"
+    )
 
 
 def _add_outputs(parser: argparse.ArgumentParser) -> None:
