@@ -67,7 +67,8 @@ field : OrientationField
 source_triangles : (T,) int32
     Per target triangle, the one of the source that its direction is from; -1 where there is no counterpart.
 distances : (T,) float64
-    In space, from the target triangle's centre to its counterpart, in the unit of the meshes; NaN where there is none.)";
+    In space, from the target triangle's centre to its counterpart, in the unit of the meshes; NaN where there is
+    none.)";
 
 constexpr auto nearest_doc = R"(Carry a field to another surface in the same place.
 
@@ -94,7 +95,8 @@ constexpr auto disks_doc = R"(Carry a field to another surface of the same topol
 
 Every target triangle gets the field at the point of the source with the same place in the disk, carried by the
 differential of the maps; none where that place is in a hole of the source. The disks are first brought together by the
-rotation under which the paired loops fit best by the centres of their holes.
+rotation under which the paired loops fit best by the centres of their holes. How well places correspond then depends on
+how alike the two maps are, which mean value maps of different meshes are only roughly: look at `distances`.
 
 Parameters
 ----------

@@ -164,6 +164,7 @@ Transfer transfer_by_nearest_point(const SurfaceMesh& source, const OrientationF
                         ", but must be positive; infinity sets no limit");
   }
   std::vector<Vec3> centres;
+  centres.reserve(target.triangle_count());
   for (std::size_t t = 0; t < target.triangle_count(); ++t) {
     centres.push_back(detail::vec3(centre(target, static_cast<std::int32_t>(t))));
   }

@@ -76,6 +76,7 @@ std::optional<DiskTriangle> disk_triangle(const SurfaceMesh& mesh, const std::ve
 
 DiskLocator::DiskLocator(const SurfaceMesh& mesh, const std::vector<DiskPoint>& points) {
   const auto triangles = disk_triangles(mesh, points);
+  is_empty_ = triangles.empty();
   std::vector<Box> boxes;
   boxes.reserve(triangles.size());
   for (const auto& triangle : triangles) boxes.push_back(bounding_box(triangle));
@@ -83,6 +84,7 @@ DiskLocator::DiskLocator(const SurfaceMesh& mesh, const std::vector<DiskPoint>& 
 }
 
 std::optional<DiskPlace> DiskLocator::find(const Eigen::Vector2d& point) const {
+  if (is_empty_) return {};
   PointSearch search{point};
   Eigen::BVIntersect(tree_, search);
   if (search.best == nullptr) return {};

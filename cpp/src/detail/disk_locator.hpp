@@ -42,6 +42,7 @@ class DiskLocator {
   std::optional<DiskPlace> find(const Eigen::Vector2d& point) const;
 
  private:
+  bool is_empty_;  // which Eigen's tree does not allow for
   Eigen::KdBVH<double, 2, DiskTriangle> tree_;
 };
 
