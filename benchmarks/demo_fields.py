@@ -6,7 +6,6 @@ import dataclasses
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -37,9 +36,8 @@ class DemoFields:
     def loop_names(self) -> dict[int, str]:
         """Short names of the boundary loops by index."""
         points = self._document["loops"]
-        return {
-            _core.nearest_boundary_loop(self.mesh, points[name]): short for name, short in LOOP_ABBREVIATIONS.items()
-        }
+        loops = {name: _core.nearest_boundary_loop(self.mesh, points[name]) for name in points}
+        return {loop: LOOP_ABBREVIATIONS[name] for name, loop in loops.items()}
 
     def constraints(self, groups: Sequence[str]) -> _core.Constraints:
         """What the borders ask for, and the tracts whose names start with one of the groups."""
@@ -51,9 +49,15 @@ class DemoFields:
         boundary = [_core.BoundaryCondition(loop, _core.BoundaryRule.parallel) for loop in self.loop_names()]
         return _core.make_constraints(self.mesh, tracts, boundary)
 
-    def interpolate(self, constraints: _core.Constraints) -> _core.OrientationField:
+    def interpolate(self, constraints: _core.Constraints) -> _core.Interpolation:
         """The field that meets the constraints."""
-        return self._interpolator.interpolate(constraints).field
+        return self._interpolator.interpolate(constraints)
+
+    def drawn_lines(self, constraints: _core.Constraints) -> Layer:
+        """Projected tracts, and the borders that fibres run along, as black tubes."""
+        borders = [loop.vertices[np.r_[0 : len(loop.vertices), 0]] for loop in self.mesh.boundary_loops]
+        lines = [tract.points for tract in constraints.tracts] + [self.mesh.vertices[border] for border in borders]
+        return Layer(line_tubes(lines, 0.6), BLACK)
 
     def place(self, field: _core.OrientationField, separation_distance: float) -> pectinate.Placement:
         """Streamlines of a field on the demo atrium."""
@@ -61,12 +65,7 @@ class DemoFields:
         return pectinate.place_streamlines(model, separation_distance=separation_distance)
 
 
-def tract_layer(constraints: _core.Constraints) -> Layer:
-    """Projected tracts as black tubes."""
-    return Layer(line_tubes([tract.points for tract in constraints.tracts], 0.6), BLACK)
-
-
-def streamline_layer(placement: pectinate.Placement, color: tuple[float, float, float]) -> Layer:
-    """Streamlines as tubes of a colour."""
-    tubes: Any = placement.tubes()
+def streamline_layer(placement: pectinate.Placement, radius: float, color: tuple[float, float, float]) -> Layer:
+    """Streamlines as tubes of a radius in mm and a colour."""
+    tubes = placement.tubes(radius=radius)
     return Layer((tubes.vertices, tubes.triangles), color)

@@ -11,24 +11,25 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 import pectinate
-from demo_fields import DemoFields, streamline_layer, tract_layer
+from demo_fields import DemoFields, streamline_layer
 from pectinate import _core
-from pectinate.figure import View, draw_disk, draw_sheet
+from pectinate.figure import SurfaceValues, View, draw_disk, draw_sheet
 
 FOLDER = Path(__file__).resolve().parents[1] / ".github" / "images"
 PAPER, INK = "white", (60, 56, 54)
 ALONG, ACROSS = (0.06, 0.22, 0.45), (0.80, 0.33, 0.05)
 # Where a fossa ovalis would be: on the septum, in front of the right veins.
 FOSSA_OVALIS = (-34.0, -8.0, 0.0)
-LENS = (0.02, 0.06, 0.3)
+LENS = (0.02, 0.03, 0.32)
 ANTERIOR = View("anterior", (0, 1, 0), (0, 0, 1))
 POSTERIOR = View("posterior", (0, -1, 0), (0, 0, 1))
 APPENDAGE = View("from the left and above", (-0.75, 0.6, -0.25), (0, 0, 1))
 TRACT_GROUPS = ("Bachmann", "septopulmonary", "T,", "appendage")
-COLORS_IN_FILE = 256
+SHADES = 64
 
 
 def demo_atrium() -> Image.Image:
@@ -51,14 +52,16 @@ def reference_frame() -> Image.Image:
     frame = _core.make_reference_frame(mesh, parameterization, inner_point=FOSSA_OVALIS)
     outer = {loop: name if loop == parameterization.outer_loop else "" for loop, name in names.items()}
     disk = draw_disk(parameterization, frame, mesh, loop_names=outer, size=460, lens=LENS)
-    lens = draw_disk(parameterization, frame, mesh, loop_names=names, size=460, window=LENS)
+    lens = draw_disk(parameterization, frame, mesh, loop_names=names, origin_name="FO", size=460, window=LENS)
     layers = []
     for angle, color in ((0.0, ALONG), (0.5 * np.pi, ACROSS)):
         field = _core.field_from_angles(mesh, frame, np.full(mesh.triangle_count, angle))
-        layers.append(streamline_layer(demo.place(field, 3.2), color))
+        layers.append(streamline_layer(demo.place(field, 3.2), 0.45, color))
     surface = (mesh.vertices, mesh.triangles)
-    views = [draw_sheet(surface, layers=layers, views=view, size=(560, 490)) for view in (POSTERIOR, ANTERIOR)]
-    return rows([panel("A", disk), lens], [panel("B", views[0]), panel("C", views[1])])
+    look = {"layers": layers, "size": (560, 490)}
+    from_behind = draw_sheet(surface, views=POSTERIOR, scale_bar=False, **look)
+    from_front = draw_sheet(surface, views=ANTERIOR, **look)
+    return rows([panel("A", disk), lens], [panel("B", from_behind), panel("C", from_front)])
 
 
 def steps() -> Image.Image:
@@ -73,9 +76,9 @@ def steps() -> Image.Image:
         ("D", 4, APPENDAGE),
     ):
         constraints = demo.constraints(TRACT_GROUPS[:groups])
-        placement = demo.place(demo.interpolate(constraints), 1.6)
+        placement = demo.place(demo.interpolate(constraints).field, 1.6)
         look = {"views": view, "size": (430, 370), "labels": False, "scale_bar": False}
-        left = draw_sheet(surface, layers=[tract_layer(constraints)], **look)
+        left = draw_sheet(surface, layers=[demo.drawn_lines(constraints)], **look)
         panels.append(panel(letter, beside([left, placement.figure(**look)])))
     return rows(panels[:2], panels[2:])
 
@@ -84,20 +87,38 @@ def noise() -> Image.Image:
     """Fig. 10: an interpolated field with noise of 0, 5 and 10 degrees; below, each after smoothing."""
     demo = DemoFields()
     constraints = demo.constraints(TRACT_GROUPS)
-    clean = demo.interpolate(constraints)
+    clean = demo.interpolate(constraints).field
     surface = (demo.mesh.vertices, demo.mesh.triangles)
-    look = {"size": (430, 370), "scale_bar": False}
-    tracts = draw_sheet(surface, layers=[tract_layer(constraints)], views=named("tracts"), **look)
+    look = {"size": (390, 335), "scale_bar": False}
+    tracts = draw_sheet(surface, layers=[demo.drawn_lines(constraints)], views=named("tracts"), **look)
     raw, smoothed = [panel("A", tracts)], [Image.new("RGB", tracts.size, PAPER)]
-    for letter, degrees in (("B", 0), ("C", 5), ("D", 10)):
+    for letters, degrees in (("BE", 0), ("CF", 5), ("DG", 10)):
         field = with_noise(demo.mesh, clean, np.radians(degrees))
-        for column, what in ((raw, field), (smoothed, _core.smooth(demo.mesh, field, length=1.5).field)):
+        smooth_field = _core.smooth(demo.mesh, field, length=1.5).field
+        for row, letter, what in zip((raw, smoothed), letters, (field, smooth_field), strict=True):
             placement = demo.place(what, 1.6)
-            name = f"{degrees} degrees" + (", smoothed" if column is smoothed else "")
+            name = f"{degrees} degrees" + (", smoothed" if row is smoothed else "")
             name += f": mean length {placement.statistics.mean_length:.1f} mm"
-            picture = placement.figure(views=named(name), **look)
-            column.append(panel(letter, picture) if column is raw else picture)
+            row.append(panel(letter, placement.figure(views=named(name), **look)))
     return rows(raw, smoothed)
+
+
+def values() -> Image.Image:
+    """Numbers on the surface: how sure an interpolated field is, and what smoothing leaves of noise of 10 degrees."""
+    demo = DemoFields()
+    constraints = demo.constraints(TRACT_GROUPS)
+    interpolation = demo.interpolate(constraints)
+    noisy = with_noise(demo.mesh, interpolation.field, np.radians(10))
+    smooth_field = _core.smooth(demo.mesh, noisy, length=1.5).field
+    left = angles_between(smooth_field.directions, interpolation.field.directions)
+    confidence = SurfaceValues(interpolation.confidence, value_range=(0, 1), label="confidence")
+    angles = SurfaceValues(left, "magma", (0, 20), "error left (degrees)")
+    look = {"views": [ANTERIOR, POSTERIOR], "size": (430, 370)}
+    lines = demo.drawn_lines(constraints)
+    return rows(
+        [panel("A", demo.model.figure(surface_values=confidence, layers=[lines], **look))],
+        [panel("B", demo.model.figure(surface_values=angles, **look))],
+    )
 
 
 def with_noise(mesh: _core.SurfaceMesh, field: _core.OrientationField, std: float) -> _core.OrientationField:
@@ -108,6 +129,12 @@ def with_noise(mesh: _core.SurfaceMesh, field: _core.OrientationField, std: floa
     vectors = np.zeros((mesh.input_triangle_count, 3))
     vectors[mesh.input_triangle] = turned
     return _core.OrientationField.from_triangle_vectors(mesh, vectors)
+
+
+def angles_between(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Degrees between the two lines of each triangle, (T,), from unit vectors (T, 3)."""
+    cosines = np.abs(np.einsum("ij,ij->i", first, second))
+    return np.degrees(np.arccos(np.clip(cosines, 0.0, 1.0)))
 
 
 def named(name: str) -> View:
@@ -143,12 +170,19 @@ def rows(*pictures: Sequence[Image.Image]) -> Image.Image:
     return sheet
 
 
+def with_few_shades(picture: Image.Image) -> Image.Image:
+    """Round each channel to one of few shades, black and white among them: nobody sees it, and files are smaller."""
+    step = 255 / (SHADES - 1)
+    return picture.point([round(round(shade / step) * step) for shade in range(256)] * 3)
+
+
 PICTURES: dict[str, Callable[[], Image.Image]] = {
     "demo_atrium": demo_atrium,
     "posterior": posterior,
     "reference_frame": reference_frame,
     "interpolation_steps": steps,
     "noise_and_smoothing": noise,
+    "values": values,
 }
 
 
@@ -161,8 +195,7 @@ def main(argv: Sequence[str] | None = None) -> None:
     arguments.out.mkdir(parents=True, exist_ok=True)
     for name in arguments.name or PICTURES:
         path = arguments.out / f"{name}.png"
-        # Few colours make the files a third as large, and nobody sees it.
-        PICTURES[name]().quantize(COLORS_IN_FILE, dither=Image.Dither.NONE).save(path, optimize=True)
+        with_few_shades(PICTURES[name]()).save(path, optimize=True)
         print(f"{path}: {path.stat().st_size // 1000} kB")
 
 

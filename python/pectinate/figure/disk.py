@@ -17,6 +17,7 @@ from pectinate import _core
 from pectinate.errors import InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
 from pectinate.figure.plotting import import_matplotlib
+from pectinate.figure.shading import unit
 from pectinate.figure.values import ColorScale
 
 _INK, _PAPER = "#3c3836", "white"
@@ -43,6 +44,7 @@ def draw_disk(  # noqa: PLR0913
     path: str | os.PathLike[str] | None = None,
     *,
     loop_names: Mapping[int, str] | None = None,
+    origin_name: str = "",
     window: Circle = WHOLE_DISK,
     lens: Circle | None = None,
     colormap: str = "viridis",
@@ -59,6 +61,8 @@ def draw_disk(  # noqa: PLR0913
         Where to write the picture; by default nowhere.
     loop_names : mapping of int to str, optional
         Names of boundary loops by their index in `mesh.boundary_loops`, empty for none; the others are numbered.
+    origin_name : str
+        Name of the place where u_D is 0, for frames with an inner point.
     window : tuple of 3 float
         x and y of the centre and radius of the part of the disk that is shown.
     lens : tuple of 3 float, optional
@@ -94,7 +98,11 @@ def draw_disk(  # noqa: PLR0913
     figure = import_matplotlib("matplotlib.figure").Figure((_WIDTH, _HEIGHT), dpi=size, facecolor=_PAPER)
     axes = _round_axes(figure, window)
     _draw_function(axes, parameterization.points, mesh, frame.u, (colormap, isoline_count))
-    _draw_holes(axes, parameterization, mesh, names)
+    origin = parameterization.points[np.nanargmin(frame.u)]
+    _draw_holes(axes, parameterization, mesh, names, origin)
+    if origin_name:
+        axes.scatter(*origin, s=_DOT**2, facecolor=_INK, linewidth=0, zorder=3).set_clip_path(axes.patches[0])
+        _write_beside(axes, origin_name, origin, np.array([0.0, -1.0]))
     if lens is not None:
         _draw_lens(axes, lens)
     if window == WHOLE_DISK:
@@ -169,23 +177,26 @@ def _draw_function(
         axes.tricontour(x, y, mapped, values, levels, colors=_PAPER, linewidths=_ISOLINE).set_clip_path(circle)
 
 
-def _draw_holes(axes: Any, parameterization: _core.Parameterization, mesh: _core.SurfaceMesh, names: list[str]) -> None:
-    """Holes in white, those too small to be seen as dots, each with its name beside it, away from the other holes."""
-    points, centres = parameterization.points, parameterization.loop_centres
-    outlines = {loop: points[mesh.boundary_loops[loop].vertices] for loop in range(len(names))}
-    del outlines[parameterization.outer_loop]
-    outlines = {loop: outline for loop, outline in outlines.items() if np.isfinite(outline).all()}
+def _draw_holes(
+    axes: Any,
+    parameterization: _core.Parameterization,
+    mesh: _core.SurfaceMesh,
+    names: list[str],
+    origin: NDArray[np.float64],
+) -> None:
+    """Holes in white, those too small to be seen as dots, each with its name beside it, away from where u is 0."""
     dot_width = _DOT / _POINTS_PER_INCH * np.ptp(axes.get_xlim())
-    for loop, outline in outlines.items():
-        look = {"facecolor": _PAPER, "edgecolor": _INK, "linewidth": _OUTLINE, "zorder": 3}
-        if np.ptp(outline, axis=0).max() < dot_width:
-            hole = axes.scatter(*centres[loop], s=_DOT**2, **look)
-        else:
-            hole = axes.fill(*outline.T, **look)[0]
+    look = {"facecolor": _PAPER, "edgecolor": _INK, "linewidth": _OUTLINE, "zorder": 3}
+    for loop, name in enumerate(names):
+        outline = parameterization.points[mesh.boundary_loops[loop].vertices]
+        if loop == parameterization.outer_loop or not np.isfinite(outline).all():
+            continue
+        centre = parameterization.loop_centres[loop]
+        small = np.ptp(outline, axis=0).max() < dot_width
+        hole = axes.scatter(*centre, s=_DOT**2, **look) if small else axes.fill(*outline.T, **look)[0]
         hole.set_clip_path(axes.patches[0])
-        if names[loop]:
-            away = centres[loop] - centres[list(outlines)].mean(axis=0)
-            _write_beside(axes, names[loop], centres[loop], away / (np.linalg.norm(away) or 1.0))
+        if name:
+            _write_beside(axes, name, centre, unit((centre - origin)[None])[0])
 
 
 def _write_beside(axes: Any, text: str, point: NDArray[np.float64], away: NDArray[np.float64]) -> None:
