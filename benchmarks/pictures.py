@@ -89,7 +89,7 @@ def noise() -> Image.Image:
     constraints = demo.constraints(TRACT_GROUPS)
     clean = demo.interpolate(constraints).field
     surface = (demo.mesh.vertices, demo.mesh.triangles)
-    look = {"size": (390, 335), "scale_bar": False}
+    look = {"size": (376, 324), "scale_bar": False}
     tracts = draw_sheet(surface, layers=[demo.drawn_lines(constraints)], views=named("tracts"), **look)
     raw, smoothed = [panel("A", tracts)], [Image.new("RGB", tracts.size, PAPER)]
     for letters, degrees in (("BE", 0), ("CF", 5), ("DG", 10)):
