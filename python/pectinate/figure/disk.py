@@ -98,7 +98,7 @@ def draw_disk(  # noqa: PLR0913
     figure = import_matplotlib("matplotlib.figure").Figure((_WIDTH, _HEIGHT), dpi=size, facecolor=_PAPER)
     axes = _round_axes(figure, window)
     _draw_function(axes, parameterization.points, mesh, frame.u, (colormap, isoline_count))
-    origin = parameterization.points[np.nanargmin(frame.u)]
+    origin = parameterization.points[frame.u == np.nanmin(frame.u)].mean(axis=0)
     _draw_holes(axes, parameterization, mesh, names, origin)
     if origin_name:
         axes.scatter(*origin, s=_DOT**2, facecolor=_INK, linewidth=0, zorder=3).set_clip_path(axes.patches[0])
@@ -184,19 +184,23 @@ def _draw_holes(
     names: list[str],
     origin: NDArray[np.float64],
 ) -> None:
-    """Holes in white, those too small to be seen as dots, each with its name beside it, away from where u is 0."""
-    dot_width = _DOT / _POINTS_PER_INCH * np.ptp(axes.get_xlim())
+    """Holes in white, those too small to be seen as dots; names in holes with room, else away from where u is 0."""
+    points_per_length = _POINTS_PER_INCH / np.ptp(axes.get_xlim())
     look = {"facecolor": _PAPER, "edgecolor": _INK, "linewidth": _OUTLINE, "zorder": 3}
     for loop, name in enumerate(names):
         outline = parameterization.points[mesh.boundary_loops[loop].vertices]
         if loop == parameterization.outer_loop or not np.isfinite(outline).all():
             continue
-        centre = parameterization.loop_centres[loop]
-        small = np.ptp(outline, axis=0).max() < dot_width
-        hole = axes.scatter(*centre, s=_DOT**2, **look) if small else axes.fill(*outline.T, **look)[0]
+        centre, width = outline.mean(axis=0), points_per_length * np.ptp(outline, axis=0).min()
+        hole = axes.scatter(*centre, s=_DOT**2, **look) if width < _DOT else axes.fill(*outline.T, **look)[0]
         hole.set_clip_path(axes.patches[0])
-        if name:
-            _write_beside(axes, name, centre, unit((centre - origin)[None])[0])
+        if width > _LETTERS * (1 + len(name)):
+            axes.annotate(name, centre, ha="center", va="center", fontsize=_LETTERS, color=_INK, zorder=5)
+        elif name:
+            # The hole where u is 0 has its name on the side where the middle of the disk is not.
+            around = np.linalg.norm(centre - origin) <= np.ptp(outline, axis=0).max()
+            away = unit((centre if around else centre - origin)[None])[0]
+            _write_beside(axes, name, outline[np.argmax(outline @ away)], away)
 
 
 def _write_beside(axes: Any, text: str, point: NDArray[np.float64], away: NDArray[np.float64]) -> None:
