@@ -70,6 +70,10 @@ format: $(STAMPS)/lint  ## format all sources in place
 bench: $(STAMPS)/installed  ## measure time, memory and quality
 	@$(BIN)/python benchmarks/run.py
 
+.PHONY: pictures
+pictures: $(STAMPS)/installed  ## draw the pictures of the documentation anew
+	@$(BIN)/python benchmarks/pictures.py
+
 .PHONY: setup
 setup: $(STAMPS)/installed  ## install system packages and the Python package into .venv
 

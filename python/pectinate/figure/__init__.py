@@ -1,3 +1,5 @@
+"""Drawings of surfaces with tubes and values on them, offscreen, and of the disk that a surface is mapped to."""
+
 from pectinate.figure.disk import draw_disk
 from pectinate.figure.lines import line_tubes
 from pectinate.figure.picture import render_view

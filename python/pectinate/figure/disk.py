@@ -17,18 +17,24 @@ from pectinate import _core
 from pectinate.errors import InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
 from pectinate.figure.plotting import import_matplotlib
+from pectinate.figure.shading import unit
 from pectinate.figure.values import ColorScale
 
 _INK, _PAPER = "#3c3836", "white"
 # The disk's diameter is one inch, so that the resolution in dots per inch is its diameter in pixels. Inches:
 _WIDTH, _HEIGHT, _LEFT, _BOTTOM = 1.2, 1.08, 0.02, 0.06
 _BAR = (1.05, 0.24, 0.03, 0.64)
-# Points, of which an inch has 72.
-_LETTERS, _OUTLINE, _ISOLINE = 2.3, 0.12, 0.07
+_POINTS_PER_INCH = 72
+# Points:
+_LETTERS, _OUTLINE, _ISOLINE, _DOT = 2.3, 0.12, 0.07, 0.6
 _LEAST_SIZE, _GREATEST_SIZE = 100, 10_000
 # Of a unit vector's component: more is not level, or not upright.
 _SLANTED = 0.35
-_WHOLE_DISK = (0.0, 0.0, 1.0)
+
+Circle = tuple[float, float, float]
+"""x and y of the centre, and the radius, in the disk's coordinates."""
+
+WHOLE_DISK: Circle = (0.0, 0.0, 1.0)
 
 
 def draw_disk(  # noqa: PLR0913
@@ -38,7 +44,9 @@ def draw_disk(  # noqa: PLR0913
     path: str | os.PathLike[str] | None = None,
     *,
     loop_names: Mapping[int, str] | None = None,
-    window: tuple[float, float, float] = _WHOLE_DISK,
+    origin_name: str = "",
+    window: Circle = WHOLE_DISK,
+    lens: Circle | None = None,
     colormap: str = "viridis",
     isoline_count: int = 9,
     size: int = 900,
@@ -52,9 +60,13 @@ def draw_disk(  # noqa: PLR0913
     path
         Where to write the picture; by default nowhere.
     loop_names : mapping of int to str, optional
-        Names of boundary loops by their index in `mesh.boundary_loops`; the others are numbered.
+        Names of boundary loops by their index in `mesh.boundary_loops`, empty for none; the others are numbered.
+    origin_name : str
+        Name of the place where u_D is 0, for frames with an inner point.
     window : tuple of 3 float
-        Centre and radius of the part of the disk that is shown: small for a lens on holes that the map has shrunk.
+        x and y of the centre and radius of the part of the disk that is shown.
+    lens : tuple of 3 float, optional
+        A circle that is marked, such as the window of a second picture, of holes that the map has shrunk.
     colormap : str
         A name of Matplotlib's.
     isoline_count : int
@@ -78,14 +90,24 @@ def draw_disk(  # noqa: PLR0913
     """
     check_picture_path(path)
     _check(parameterization, frame, mesh)
-    _check_options(window, isoline_count, size)
-    scale = ColorScale(colormap, 0.0, 1.0)
+    for name, circle in (("window", window), ("lens", lens or WHOLE_DISK)):
+        _check_circle(name, circle)
+    _check_options(isoline_count, size)
+    ColorScale(colormap, 0.0, 1.0)
     names = _loop_names(mesh, loop_names or {})
     figure = import_matplotlib("matplotlib.figure").Figure((_WIDTH, _HEIGHT), dpi=size, facecolor=_PAPER)
     axes = _round_axes(figure, window)
-    _draw_function(axes, parameterization.points, mesh.triangles, frame.u, scale, isoline_count)
-    _draw_holes(axes, parameterization, mesh, names)
-    _draw_margin(figure, axes, names[parameterization.outer_loop])
+    _draw_function(axes, parameterization.points, mesh, frame.u, (colormap, isoline_count))
+    origin = parameterization.points[frame.u == np.nanmin(frame.u)].mean(axis=0)
+    _draw_holes(axes, parameterization, mesh, names, origin)
+    if origin_name:
+        axes.scatter(*origin, s=_DOT**2, facecolor=_INK, linewidth=0, zorder=3).set_clip_path(axes.patches[0])
+        _write_beside(axes, origin_name, origin, np.array([0.0, -1.0]))
+    if lens is not None:
+        _draw_lens(axes, lens)
+    if window == WHOLE_DISK:
+        _write_below(figure, names[parameterization.outer_loop])
+    _draw_color_bar(figure, axes)
     canvas = import_matplotlib("matplotlib.backends.backend_agg").FigureCanvasAgg(figure)
     canvas.draw()
     return save_picture(Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB"), path)
@@ -99,9 +121,12 @@ def _check(parameterization: _core.Parameterization, frame: _core.ReferenceFrame
             )
 
 
-def _check_options(window: tuple[float, float, float], isoline_count: int, size: int) -> None:
-    if len(window) != 3 or not np.isfinite(window).all() or window[2] <= 0:  # noqa: PLR2004
-        raise InvalidOption(f"window {window}: give the centre's x and y and a radius above 0")
+def _check_circle(name: str, circle: Circle) -> None:
+    if len(circle) != 3 or not np.isfinite(circle).all() or circle[2] <= 0:  # noqa: PLR2004
+        raise InvalidOption(f"{name} {circle}: give the centre's x and y and a radius above 0")
+
+
+def _check_options(isoline_count: int, size: int) -> None:
     if not isinstance(isoline_count, int) or isoline_count < 0:
         raise InvalidOption(f"isoline_count {isoline_count}: give a whole number, 0 or more")
     if not isinstance(size, int) or not _LEAST_SIZE <= size <= _GREATEST_SIZE:
@@ -116,53 +141,66 @@ def _loop_names(mesh: _core.SurfaceMesh, given: Mapping[int, str]) -> list[str]:
     return [given.get(loop, str(loop)) for loop in range(count)]
 
 
-def _round_axes(figure: Any, window: tuple[float, float, float]) -> Any:
-    """Axes that show the window as a circle of one inch; what is drawn in them is cut off there."""
+def _round_axes(figure: Any, window: Circle) -> Any:
+    """Axes that show the window as a circle of one inch, their first patch; what is drawn is to be cut off there."""
     x, y, radius = window
     axes = figure.add_axes((_LEFT / _WIDTH, _BOTTOM / _HEIGHT, 1 / _WIDTH, 1 / _HEIGHT))
     axes.set(xlim=(x - radius, x + radius), ylim=(y - radius, y + radius))
     axes.axis("off")
-    circle = import_matplotlib("matplotlib.patches").Circle(
-        (0.5, 0.5), 0.5, transform=axes.transAxes, fill=False, edgecolor=_INK, linewidth=_OUTLINE, clip_on=False
-    )
-    axes.add_patch(circle).set_zorder(4)
+    outline = _circle(0.5, 0.5, 0.5, transform=axes.transAxes, linewidth=_OUTLINE, clip_on=False, zorder=4)
+    axes.add_patch(outline)
     return axes
 
 
+def _draw_lens(axes: Any, lens: Circle) -> None:
+    axes.add_patch(_circle(*lens, linewidth=_OUTLINE, linestyle=(0, (8, 6)), zorder=4)).set_clip_path(axes.patches[0])
+
+
+def _circle(x: float, y: float, radius: float, **properties: Any) -> Any:
+    shape = import_matplotlib("matplotlib.patches").Circle
+    return shape((x, y), radius, fill=False, edgecolor=_INK, **properties)
+
+
 def _draw_function(
-    axes: Any,
-    points: NDArray[np.float64],
-    triangles: NDArray[np.int32],
-    u: NDArray[np.float64],
-    scale: ColorScale,
-    isoline_count: int,
+    axes: Any, points: NDArray[np.float64], mesh: _core.SurfaceMesh, u: NDArray[np.float64], look: tuple[str, int]
 ) -> None:
-    """Colours and isolines of a function per vertex, where it and the map are finite."""
-    circle = axes.patches[0]
+    """Colours, and a number of isolines, of a function per vertex, where it and the map are finite."""
+    circle, (colormap, isoline_count) = axes.patches[0], look
     finite = np.isfinite(points).all(axis=1) & np.isfinite(u)
-    mapped = triangles[finite[triangles].all(axis=1)]
+    mapped = mesh.triangles[finite[mesh.triangles].all(axis=1)]
     # Matplotlib refuses NaN even where no triangle uses it.
     x, y, values = (np.where(finite, array, 0.0) for array in (*points.T, u))
-    axes.tripcolor(
-        x, y, mapped, values, shading="gouraud", cmap=scale.colormap, vmin=scale.low, vmax=scale.high
-    ).set_clip_path(circle)
+    colored = axes.tripcolor(x, y, mapped, values, shading="gouraud", cmap=colormap, vmin=0.0, vmax=1.0)
+    colored.set_clip_path(circle)
     if isoline_count:
-        levels = np.linspace(scale.low, scale.high, isoline_count + 2)[1:-1]
+        levels = np.linspace(0.0, 1.0, isoline_count + 2)[1:-1]
         axes.tricontour(x, y, mapped, values, levels, colors=_PAPER, linewidths=_ISOLINE).set_clip_path(circle)
 
 
-def _draw_holes(axes: Any, parameterization: _core.Parameterization, mesh: _core.SurfaceMesh, names: list[str]) -> None:
-    """Holes in white, each with its name beside it, away from the other holes."""
-    circle = axes.patches[0]
-    points, centres = parameterization.points, parameterization.loop_centres
-    holes = [loop for loop in range(len(names)) if loop != parameterization.outer_loop]
-    holes = [loop for loop in holes if np.isfinite(points[mesh.boundary_loops[loop].vertices]).all()]
-    for loop in holes:
-        outline = points[mesh.boundary_loops[loop].vertices]
-        axes.fill(*outline.T, facecolor=_PAPER, edgecolor=_INK, linewidth=_OUTLINE, zorder=3)[0].set_clip_path(circle)
-        away = centres[loop] - centres[holes].mean(axis=0)
-        away = away / (np.linalg.norm(away) or 1.0)
-        _write_beside(axes, names[loop], centres[loop], away)
+def _draw_holes(
+    axes: Any,
+    parameterization: _core.Parameterization,
+    mesh: _core.SurfaceMesh,
+    names: list[str],
+    origin: NDArray[np.float64],
+) -> None:
+    """Holes in white, those too small to be seen as dots; names in holes with room, else away from where u is 0."""
+    points_per_length = _POINTS_PER_INCH / np.ptp(axes.get_xlim())
+    look = {"facecolor": _PAPER, "edgecolor": _INK, "linewidth": _OUTLINE, "zorder": 3}
+    for loop, name in enumerate(names):
+        outline = parameterization.points[mesh.boundary_loops[loop].vertices]
+        if loop == parameterization.outer_loop or not np.isfinite(outline).all():
+            continue
+        centre, width = outline.mean(axis=0), points_per_length * np.ptp(outline, axis=0).min()
+        hole = axes.scatter(*centre, s=_DOT**2, **look) if width < _DOT else axes.fill(*outline.T, **look)[0]
+        hole.set_clip_path(axes.patches[0])
+        if width > _LETTERS * (1 + len(name)):
+            axes.annotate(name, centre, ha="center", va="center", fontsize=_LETTERS, color=_INK, zorder=5)
+        elif name:
+            # The hole where u is 0 has its name on the side where the middle of the disk is not.
+            around = np.linalg.norm(centre - origin) <= np.ptp(outline, axis=0).max()
+            away = unit((centre if around else centre - origin)[None])[0]
+            _write_beside(axes, name, outline[np.argmax(outline @ away)], away)
 
 
 def _write_beside(axes: Any, text: str, point: NDArray[np.float64], away: NDArray[np.float64]) -> None:
@@ -183,17 +221,12 @@ def _write_beside(axes: Any, text: str, point: NDArray[np.float64], away: NDArra
     )
 
 
-def _draw_margin(figure: Any, axes: Any, outer_name: str) -> None:
-    """The name of the outer loop below the disk, and the colour bar on its right."""
-    figure.text(
-        (_LEFT + 0.5) / _WIDTH,
-        0.4 * _BOTTOM / _HEIGHT,
-        outer_name,
-        color=_INK,
-        ha="center",
-        va="center",
-        fontsize=_LETTERS,
-    )
+def _write_below(figure: Any, text: str) -> None:
+    place = ((_LEFT + 0.5) / _WIDTH, 0.4 * _BOTTOM / _HEIGHT)
+    figure.text(*place, text, color=_INK, ha="center", va="center", fontsize=_LETTERS)
+
+
+def _draw_color_bar(figure: Any, axes: Any) -> None:
     left, bottom, width, height = _BAR
     place = figure.add_axes((left / _WIDTH, bottom / _HEIGHT, width / _WIDTH, height / _HEIGHT))
     bar = figure.colorbar(axes.collections[0], cax=place)

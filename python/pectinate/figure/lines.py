@@ -54,9 +54,10 @@ def line_tubes(
     count = 0
     for index, line in enumerate(lines):
         rings = _rings(_distinct_points(index, line), radius, side_count)
-        vertices.append(rings.reshape(-1, 3))
-        triangles.append(count + _between_rings(len(rings), side_count))
-        count += len(vertices[-1])
+        used, corners = np.unique(_between_rings(len(rings), side_count), return_inverse=True)
+        vertices.append(rings.reshape(-1, 3)[used])
+        triangles.append(count + corners.reshape(-1, 3))
+        count += len(used)
     return np.concatenate(vertices), np.concatenate(triangles)
 
 
@@ -112,8 +113,12 @@ def _some_axis(tangent: _Points) -> _Points:
 
 
 def _between_rings(ring_count: int, side_count: int) -> NDArray[np.int64]:
-    """Return the triangles, (2 (rings - 1) sides, 3), between each ring and the next."""
+    """Return the triangles between each ring and the next; the first and the last ring are one point each."""
     start = side_count * np.arange(ring_count - 1)[:, None]
     a, b = start + np.arange(side_count), start + (np.arange(side_count) + 1) % side_count
     lower, upper = np.stack([a, b, b + side_count], axis=-1), np.stack([a, b + side_count, a + side_count], axis=-1)
-    return np.concatenate([lower.reshape(-1, 3), upper.reshape(-1, 3)])
+    triangles = np.concatenate([lower.reshape(-1, 3), upper.reshape(-1, 3)])
+    last = side_count * (ring_count - 1)
+    triangles[triangles < side_count] = 0
+    triangles[triangles >= last] = last
+    return triangles[np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)]

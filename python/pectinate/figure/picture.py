@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pectinate.errors import InvalidOption
 from pectinate.figure.offscreen import Canvas, open_canvas
-from pectinate.figure.shading import Style, box_downsample, fold_shadow
+from pectinate.figure.shading import VALUE_SHADE, Style, box_downsample, fold_shadow
 from pectinate.figure.shape import Drawing, Layer, Triangles, check_drawing, patches
 from pectinate.figure.values import SurfaceValues
 from pectinate.figure.views import View, resolve_view
@@ -144,10 +144,11 @@ def draw_frame(canvas: Canvas, drawing: Drawing, frame: Frame, supersampling: in
     color, depth = canvas.draw(seen, fine_size, frame.mm_per_pixel / supersampling)
     lit = color.astype(np.float32) / np.float32(255)
     fold_size = _FOLD_SIZE * float(np.linalg.norm(np.ptp(drawing.surface.vertices, axis=0)))
-    if style.fold_darkness > 0 and fold_size > 0:
+    darkness = style.fold_darkness * (1.0 if drawing.colors is None else VALUE_SHADE)
+    if darkness > 0 and fold_size > 0:
         radius = min(max(1, round(0.5 * fold_size / frame.mm_per_pixel)), max(frame.size))
         shadow = fold_shadow(depth, supersampling, radius, 0.5 * fold_size)
-        lit[:, :, :3] *= (1 - np.float32(style.fold_darkness) * shadow)[:, :, None]
+        lit[:, :, :3] *= (1 - np.float32(darkness) * shadow)[:, :, None]
     return box_downsample(lit, supersampling)
 
 

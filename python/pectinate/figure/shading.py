@@ -40,11 +40,12 @@ class Style:
     edge_darkness: float = 0.35
 
 
+VALUE_SHADE = 0.6
+"""Share of light and shadow that is left on a surface that shows values, so that their colours can be read."""
+
 # Direction towards each light in picture coordinates, with its strength: upper left, right, viewer.
 _LIGHTS = (((-0.55, 0.65, 0.53), 0.36), ((0.80, 0.05, 0.60), 0.16), ((0.0, 0.0, 1.0), 0.26))
 _SKY, _GROUND = 0.40, 0.24
-# Share of the light's differences that is left where the surface shows values.
-_VALUE_SHADE = 0.6
 _GLOSS_DIRECTION, _GLOSS_EXPONENT = (-0.30, 0.36, 0.88), 12
 
 
@@ -109,7 +110,7 @@ def light(normals: NDArray[np.float64], edge_darkness: float) -> NDArray[np.floa
 def value_light(normals: NDArray[np.float64], edge_darkness: float) -> NDArray[np.float64]:
     """Brightness as of `light`, but gentle, so that colours can be read: 1, their own, on all that faces the viewer."""
     facing = light(np.array([[0.0, 0.0, 1.0]]), edge_darkness)
-    return np.asarray(1.0 - _VALUE_SHADE * np.clip(1.0 - light(normals, edge_darkness) / facing, 0.0, None))
+    return np.asarray(1.0 - VALUE_SHADE * np.clip(1.0 - light(normals, edge_darkness) / facing, 0.0, None))
 
 
 def gloss(normals: NDArray[np.float64]) -> NDArray[np.float64]:
