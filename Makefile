@@ -70,6 +70,10 @@ format: $(STAMPS)/lint  ## format all sources in place
 bench: $(STAMPS)/installed  ## measure time, memory and quality
 	@$(BIN)/python benchmarks/run.py
 
+.PHONY: pictures
+pictures: $(STAMPS)/installed  ## draw the pictures of the documentation anew
+	@$(BIN)/python benchmarks/pictures.py
+
 .PHONY: setup
 setup: $(STAMPS)/installed  ## install system packages and the Python package into .venv
 
@@ -101,7 +105,7 @@ $(STAMPS)/environment: | system
 
 $(STAMPS)/requirements: pyproject.toml .ci/requirements $(STAMPS)/environment
 	@echo "installing what pectinate needs into $(VENV)"
-	@$(BIN)/python .ci/requirements vtk test >$@.txt
+	@$(BIN)/python .ci/requirements vtk figures test >$@.txt
 	@$(PIP_INSTALL) -r $@.txt
 	@touch $@
 

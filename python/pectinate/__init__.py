@@ -12,24 +12,48 @@ from importlib.metadata import version
 
 from pectinate import datasets, errors
 from pectinate._core import OrientationField, SurfaceMesh, Tubes
+from pectinate.comparison import Comparison, add_noise, compare
+from pectinate.interpolated_field import InterpolatedField
+from pectinate.interpolation import FieldEditor, interpolate
 from pectinate.io import load, save_surface
+from pectinate.io.tract_file import read_tracts
+from pectinate.loops import find_loop
 from pectinate.model import Model, SurfaceData
+from pectinate.parameterization import DiskMap, parameterize
 from pectinate.placement import Placement, place_streamlines
+from pectinate.smoothing import SmoothedField, smooth
 from pectinate.statistics import PlacementStatistics
+from pectinate.tracts import BoundaryCondition, SurfaceIdentity, Tract, TractSet
 
 __all__ = [
+    "BoundaryCondition",
+    "Comparison",
+    "DiskMap",
+    "FieldEditor",
+    "InterpolatedField",
     "Model",
     "OrientationField",
     "Placement",
     "PlacementStatistics",
+    "SmoothedField",
     "SurfaceData",
+    "SurfaceIdentity",
     "SurfaceMesh",
+    "Tract",
+    "TractSet",
     "Tubes",
+    "add_noise",
+    "compare",
     "datasets",
     "errors",
+    "find_loop",
+    "interpolate",
     "load",
+    "parameterize",
     "place_streamlines",
+    "read_tracts",
     "save_surface",
+    "smooth",
 ]
 
 __version__ = version("pectinate")

@@ -11,7 +11,8 @@ def demo_atrium(*, edge_length: float = 1.0) -> Model:
     """Make an atrium-like surface with a smooth orientation field.
 
     A body with four pulmonary veins, an appendage and an open mitral valve; +x points to the patient's left, +y
-    backwards, +z up. Tags: 0 body, then the veins and the appendage, as the notes of the model say.
+    backwards, +z up. Tags: 0 body, then the veins and the appendage, as the notes of the model say. Its boundary loops
+    have names, see `Model.loop_names`.
 
     Parameters
     ----------
@@ -32,5 +33,6 @@ def demo_atrium(*, edge_length: float = 1.0) -> Model:
         vectors=atrium.directions,
         tags=atrium.regions.astype("int64"),
         notes=tuple(f"tag {tag} is the {name}" for tag, name in enumerate(atrium.region_names)),
+        loop_points={loop.name.replace("_", " "): atrium.vertices[loop.vertices[0]] for loop in atrium.loops},
     )
     return Model.from_data(data)

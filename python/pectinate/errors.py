@@ -22,7 +22,9 @@ class InvalidFile(Error, ValueError):
     """A file that does not exist, cannot be written, or breaks the rules of its format."""
 
     @classmethod
-    def at(cls, path: str | os.PathLike[str], rule: str, remedy: str, *, line: int | None = None) -> InvalidFile:
+    def at(
+        cls, path: str | os.PathLike[str], rule: str, remedy: str, *, line: int | None = None, place: str = ""
+    ) -> InvalidFile:
         """Make the error for one place in a file.
 
         Parameters
@@ -35,9 +37,11 @@ class InvalidFile(Error, ValueError):
             What to do about it, in one clause.
         line
             Number of the line, from 1; None where the file has no lines or the whole file is wrong.
+        place
+            In a file of objects in objects, such as "tracts[3].points[7]".
         """
-        where = os.fspath(path) if line is None else f"{os.fspath(path)}, line {line}"
-        return cls(f"{where}: {rule}; {remedy}")
+        where = [os.fspath(path)] + ([] if line is None else [f"line {line}"]) + ([place] if place else [])
+        return cls(f"{', '.join(where)}: {rule}; {remedy}")
 
 
 class MissingDependency(Error, ImportError):

@@ -2,31 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image
 
-from pectinate._core import DirectionStatus, OrientationField, SurfaceMesh
+from pectinate import _core
+from pectinate._core import OrientationField, SurfaceMesh
 from pectinate.errors import InvalidField, InvalidMesh
+from pectinate.figure.files import check_picture_path, save_picture
+from pectinate.figure.sheet import draw_sheet
+from pectinate.summary import summarize
 
 if TYPE_CHECKING:
     from pectinate.io.units import UnitDecision
 
 Location = Literal["triangle", "vertex"]
-
-_REPAIRS = (
-    "degenerate_triangles",
-    "duplicate_triangles",
-    "non_finite_vertices",
-    "non_finite_triangles",
-    "unreferenced_vertices",
-    "reversed_triangles",
-    "split_vertices",
-    "non_manifold_edges",
-)
-_FIRST_INDICES = 5
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +54,8 @@ class SurfaceData:
         Number of all elements of the source; None where there are only triangles.
     notes
         What a reader decided or left out, one sentence each.
+    loop_points
+        For each named boundary loop a point (3,), mm: the name goes to the loop nearest to it.
     """
 
     vertices: NDArray[np.float64]
@@ -73,6 +70,7 @@ class SurfaceData:
     element_rows: NDArray[np.int64] | None = None
     element_count: int | None = None
     notes: tuple[str, ...] = ()
+    loop_points: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,53 +121,91 @@ class Model:
         """Second direction of each mesh triangle as given, (T, 3); None where the source has none."""
         return None if self.data.second_vectors is None else self.data.second_vectors[self.mesh.input_triangle]
 
+    @property
+    def loop_names(self) -> dict[str, int]:
+        """Index in `mesh.boundary_loops` of each named loop: the one nearest to its point in `data.loop_points`."""
+        if not self.mesh.boundary_loops:
+            return {}
+        points = self.data.loop_points
+        return {name: _core.nearest_boundary_loop(self.mesh, point) for name, point in points.items()}
+
+    def require_field(self) -> OrientationField:
+        """Return the field.
+
+        Raises
+        ------
+        InvalidField
+            There is none.
+        """
+        if self.field is None:
+            raise InvalidField(f"{self.data.source} has no orientation field; give one with load(..., field=...)")
+        return self.field
+
+    def with_loop_points(self, points: Mapping[str, NDArray[np.float64]]) -> Model:
+        """Name more loops, each by a point (3,), mm, on it or near it; a name that is known gets the new point."""
+        return replace(self, data=replace(self.data, loop_points={**self.data.loop_points, **points}))
+
+    def with_field(self, field: OrientationField, note: str) -> Model:
+        """Replace the field of this mesh, and with it vectors, tensors and second vectors of the data.
+
+        Parameters
+        ----------
+        field
+            Of `mesh`; triangles of the source that the mesh does not have get zero vectors.
+        note
+            One sentence for `data.notes`: where the field comes from.
+        """
+        vectors = self.per_input_triangle(field.directions, missing=0.0)
+        notes = (*self.data.notes, note)
+        data = replace(self.data, vectors=vectors, tensors=None, vector_location="triangle", notes=notes)
+        return Model(self.mesh, field, replace(data, second_vectors=None))
+
+    def vertex_directions(self) -> NDArray[np.float64]:
+        """Average the field per vertex of the source, (V, 3): unit lines, by the tensors of the triangles around.
+
+        Zero where no triangle around has a direction. A vertex where the mesh was cut gets that of its first fan.
+
+        Raises
+        ------
+        InvalidField
+            There is no field.
+        """
+        directions = _core.vertex_directions(self.mesh, self.require_field())
+        vertices, first = np.unique(self.mesh.input_vertex, return_index=True)
+        result = np.zeros((self.mesh.input_vertex_count, 3))
+        result[vertices] = directions[first]
+        return result
+
+    def per_input_triangle(self, values: NDArray[np.float64], *, missing: float = np.nan) -> NDArray[np.float64]:
+        """Take values (T, ...) of mesh triangles to the triangles of the source; `missing` for those left out."""
+        result = np.full((self.mesh.input_triangle_count, *values.shape[1:]), missing)
+        result[self.mesh.input_triangle] = values
+        return result
+
+    def figure(self, path: str | os.PathLike[str] | None = None, **sheet_options: Any) -> Image.Image:
+        """Draw the surface without streamlines, in one or several views, such as for a map of values on it.
+
+        Parameters
+        ----------
+        path
+            Where to write the picture; by default nowhere.
+        sheet_options
+            Of `pectinate.figure.draw_sheet`: `surface_values` (per triangle or vertex of `mesh`), `layers`, ...
+
+        Raises
+        ------
+        InvalidOption, InvalidFile, RenderingUnavailable, MissingDependency
+            As `Placement.figure`.
+        """
+        check_picture_path(path)
+        return save_picture(draw_sheet((self.mesh.vertices, self.mesh.triangles), **sheet_options), path)
+
     def summary(self) -> dict[str, Any]:
         """Everything worth knowing before streamlines are placed, ready for JSON.
 
         Lengths are in mm, areas in mm^2, angles in degrees; triangle and vertex indices are those of the source.
         """
-        return {
-            "source": self.data.source,
-            "units": vars(self.data.units).copy(),
-            "input": {"vertices": len(self.data.vertices), "triangles": len(self.data.triangles)},
-            "mesh": _mesh_summary(self.mesh),
-            "components": [_component_summary(component) for component in self.mesh.components],
-            "boundary_loops": self._boundary_loops(),
-            "area_per_tag": self._area_per_tag(),
-            "repairs": _repairs_summary(self.mesh),
-            "field": None if self.field is None else self._field_summary(self.field),
-            "notes": list(self.data.notes),
-        }
-
-    def _boundary_loops(self) -> list[dict[str, Any]]:
-        return [
-            {
-                "vertices": len(loop.vertices),
-                "length": float(loop.length),
-                "diameter": float(loop.diameter),
-                "centroid": [float(x) for x in loop.centroid],
-                "component": int(loop.component),
-                "tags": tags,
-            }
-            for loop, tags in zip(self.mesh.boundary_loops, _loop_tags(self.mesh, self.tags), strict=True)
-        ]
-
-    def _area_per_tag(self) -> dict[str, float] | None:
-        if self.tags is None:
-            return None
-        values, group = np.unique(self.tags, return_inverse=True)
-        areas = np.bincount(group, weights=self.mesh.triangle_areas)
-        return {str(tag): float(area) for tag, area in zip(values, areas, strict=True)}
-
-    def _field_summary(self, field: OrientationField) -> dict[str, Any]:
-        angles = np.degrees(field.out_of_plane_angles[field.status == DirectionStatus.valid])
-        return {
-            "given_as": "vectors" if self.data.vectors is not None else "tensors",
-            "given_per": self.data.vector_location,
-            "status": {status.name: int(np.count_nonzero(field.status == status)) for status in DirectionStatus},
-            "out_of_plane_median": float(np.median(angles)),
-            "out_of_plane_p95": float(np.percentile(angles, 95)),
-        }
+        return summarize(self)
 
 
 def _orientation_field(mesh: SurfaceMesh, data: SurfaceData) -> OrientationField | None:
@@ -181,52 +217,3 @@ def _orientation_field(mesh: SurfaceMesh, data: SurfaceData) -> OrientationField
         of_tensors = OrientationField.from_triangle_tensors if per_triangle else OrientationField.from_vertex_tensors
         return of_tensors(mesh, data.tensors)
     return None
-
-
-def _mesh_summary(mesh: SurfaceMesh) -> dict[str, Any]:
-    return {
-        "vertices": len(mesh.vertices),
-        "triangles": int(mesh.triangle_count),
-        "edges": len(mesh.edges),
-        "area": float(mesh.area),
-        "mean_edge_length": float(np.mean(mesh.edge_lengths)),
-        "bounding_box": [mesh.vertices.min(axis=0).tolist(), mesh.vertices.max(axis=0).tolist()],
-        "bounding_box_diagonal": float(mesh.bounding_box_diagonal),
-    }
-
-
-def _component_summary(component: Any) -> dict[str, Any]:
-    return {
-        "triangles": int(component.triangle_count),
-        "area": float(component.area),
-        "euler_characteristic": int(component.euler_characteristic),
-        "boundary_loops": int(component.boundary_loop_count),
-        "orientable": bool(component.orientable),
-        "genus": int(component.genus),
-    }
-
-
-def _repairs_summary(mesh: SurfaceMesh) -> dict[str, Any]:
-    found = {name: np.asarray(getattr(mesh.repairs, name)) for name in _REPAIRS}
-    return {name: {"count": len(rows), "first": rows[:_FIRST_INDICES].tolist()} for name, rows in found.items()}
-
-
-def _loop_tags(mesh: SurfaceMesh, tags: NDArray[np.int64] | None) -> list[list[int]] | list[None]:
-    """Collect the sorted tags of the triangles along each boundary loop; None without tags."""
-    if tags is None:
-        return [None] * len(mesh.boundary_loops)
-    sides = mesh.triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-    keys = _edge_keys(mesh, sides)
-    order = np.argsort(keys)
-    result = []
-    for loop in mesh.boundary_loops:
-        loop_keys = _edge_keys(mesh, np.column_stack([loop.vertices, np.roll(loop.vertices, -1)]))
-        triangles = order[np.searchsorted(keys, loop_keys, sorter=order)] // 3
-        result.append([int(tag) for tag in np.unique(tags[triangles])])
-    return result
-
-
-def _edge_keys(mesh: SurfaceMesh, ends: NDArray[np.int32]) -> NDArray[np.int64]:
-    """One number per vertex pair, the same both ways."""
-    ordered = np.sort(ends.astype(np.int64), axis=1)
-    return ordered[:, 0] * len(mesh.vertices) + ordered[:, 1]

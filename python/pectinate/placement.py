@@ -13,7 +13,9 @@ from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
 from pectinate import _core
-from pectinate.errors import InvalidField, InvalidFile, InvalidOption
+from pectinate.errors import InvalidOption
+from pectinate.figure.files import check_picture_path, save_picture
+from pectinate.figure.sheet import draw_sheet
 from pectinate.io import load, streamlines
 from pectinate.model import Model
 from pectinate.statistics import PlacementStatistics
@@ -104,13 +106,12 @@ def place_streamlines(
         An unknown option.
     """
     model = load(surface)
-    if model.field is None:
-        raise InvalidField(f"{model.data.source} has no orientation field; give one with load(..., field=...)")
+    field = model.require_field()
     for name in _ENUMERATIONS.keys() & options.keys():
         options[name] = _member(name, options[name])
     if np.ndim(options.get("separation_distance", 0.0)) > 0:
         options["separation_distances"] = _per_mesh_triangle(model, options.pop("separation_distance"))
-    return Placement(model, _core.place_streamlines(model.mesh, model.field, progress=progress, **options))
+    return Placement(model, _core.place_streamlines(model.mesh, field, progress=progress, **options))
 
 
 def _member(name: str, value: Any) -> Enum:
@@ -185,8 +186,7 @@ class Placement:
     @property
     def field(self) -> _core.OrientationField:
         """The orientation field that the streamlines follow."""
-        assert self.model.field is not None
-        return self.model.field
+        return self.model.require_field()
 
     def __len__(self) -> int:
         """Count the streamlines."""
@@ -276,7 +276,7 @@ class Placement:
         tube_radius, taper_length, side_count
             As `radius`, `taper_length` and `side_count` of `tubes`.
         sheet_options
-            Of `pectinate.figure.draw_sheet`: `views`, `size`, `columns`, ...
+            Of `pectinate.figure.draw_sheet`: `views`, `size`, `surface_values` (per triangle or vertex of `mesh`), ...
 
         Raises
         ------
@@ -286,18 +286,10 @@ class Placement:
             The picture cannot be written.
         RenderingUnavailable
             There is no OpenGL; the message names the packages that bring it.
+        MissingDependency
+            There are values to show, but Matplotlib is not installed.
         """
-        if path is not None and Path(path).suffix.lower() not in Image.registered_extensions():
-            raise InvalidOption(f"{path}: the suffix is none of a picture; use .png, .jpg, .tif or .pdf")
-        from pectinate.figure import draw_sheet  # noqa: PLC0415  (OpenGL is loaded for drawing only)
-
+        check_picture_path(path)
         tubes = self.tubes(radius=tube_radius, taper_length=taper_length, side_count=side_count)
-        sheet = draw_sheet(
-            (self.mesh.vertices, self.mesh.triangles), (tubes.vertices, tubes.triangles), **sheet_options
-        )
-        if path is not None:
-            try:
-                sheet.save(path)
-            except OSError as error:
-                raise InvalidFile.at(path, f"cannot be written ({error.strerror})", "check the folder") from error
-        return sheet
+        surface = (self.mesh.vertices, self.mesh.triangles)
+        return save_picture(draw_sheet(surface, (tubes.vertices, tubes.triangles), **sheet_options), path)

@@ -7,6 +7,9 @@ from pathlib import Path
 
 import pytest
 
+from pectinate.errors import RenderingUnavailable
+from pectinate.figure.context import offscreen_context
+
 REPOSITORY = Path(__file__).resolve().parents[2]
 
 
@@ -26,3 +29,13 @@ def human_atrium(real_data: Path) -> Path:
     if not folder.is_dir():
         pytest.skip(f"{folder} not found")
     return folder
+
+
+@pytest.fixture(scope="session")
+def opengl() -> None:
+    """Skip where nothing can be drawn."""
+    try:
+        with offscreen_context():
+            pass
+    except RenderingUnavailable as error:
+        pytest.skip(str(error))

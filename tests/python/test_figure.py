@@ -19,17 +19,10 @@ from pectinate.figure.context import offscreen_context
 
 Arrays = tuple[NDArray[np.float64], NDArray[np.int64]]
 
+pytestmark = pytest.mark.usefixtures("opengl")
+
 SCALE = 0.25  # mm per pixel
 SIZE = (200, 160)
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _opengl() -> None:
-    try:
-        with offscreen_context():
-            pass
-    except RenderingUnavailable as error:
-        pytest.skip(str(error))
 
 
 def sphere(radius: float = 10.0, centre: tuple[float, float, float] = (0, 0, 0)) -> Arrays:

@@ -1,4 +1,4 @@
-"""The command line: `pectinate place`, `pectinate info` and `pectinate demo`."""
+"""The command line: `pectinate place`, `interpolate`, `smooth`, `compare`, `parameterize`, `info` and `demo`."""
 
 from __future__ import annotations
 
@@ -6,8 +6,9 @@ import enum
 import sys
 from collections.abc import Sequence
 
-from pectinate.cli.arguments import UsageError, make_parser
-from pectinate.cli.commands import OutputError
+from pectinate.cli.arguments import make_parser
+from pectinate.cli.files import OutputError
+from pectinate.cli.shared_arguments import UsageError
 from pectinate.errors import Error, InvalidField, InvalidFile, InvalidMesh, InvalidOption
 
 __all__ = ["ExitCode", "main"]

@@ -1,22 +1,26 @@
-"""The commands: each takes the parsed arguments, does its work and prints its report."""
+"""The commands about streamlines: each takes the parsed arguments, does its work and prints its report."""
 
 from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Set
 from pathlib import Path
-from typing import Any
-
-import numpy as np
-from PIL import Image
 
 import pectinate
 from pectinate.cli import report
+from pectinate.cli.files import (
+    OutputError,
+    check_figure,
+    check_folders,
+    check_suffixes,
+    given,
+    load_surface,
+    with_loop_names,
+    writing,
+)
 from pectinate.cli.progress import ProgressBar
 from pectinate.datasets import demo_atrium
-from pectinate.errors import InvalidField, InvalidFile, InvalidOption
-from pectinate.figure.views import resolve_view
+from pectinate.errors import InvalidField
 from pectinate.model import Model
 from pectinate.placement import DEFAULTS, Placement
 
@@ -27,14 +31,10 @@ _TUBE_OPTIONS = {"tube_radius": "radius", "taper_length": "taper_length", "side_
 _FIGURE_OPTIONS = {name: name for name in ("views", "tube_radius", "taper_length", "side_count")}
 
 
-class OutputError(Exception):
-    """A result that could not be written; the input was fine."""
-
-
 def place(arguments: argparse.Namespace) -> None:
     """Place streamlines on the surface of a file, save and draw them."""
     _check_outputs(arguments)
-    model = _load(arguments)
+    model = load_surface(arguments)
     if model.field is None:
         raise InvalidField(f"{arguments.mesh}: the file gives no fibres; name the array or a file with --field")
     _place(model, arguments)
@@ -42,7 +42,7 @@ def place(arguments: argparse.Namespace) -> None:
 
 def info(arguments: argparse.Namespace) -> None:
     """Describe the surface and the field of a file."""
-    summary = _load(arguments).summary()
+    summary = with_loop_names(load_surface(arguments), arguments).summary()
     if arguments.json:
         report.print_json(summary)
     elif not arguments.quiet:
@@ -51,7 +51,7 @@ def info(arguments: argparse.Namespace) -> None:
 
 def demo(arguments: argparse.Namespace) -> None:
     """Place streamlines on the demo atrium, save and draw them in a folder."""
-    model = demo_atrium(**_given(arguments, {"edge_length": "edge_length"}))
+    model = demo_atrium(**given(arguments, {"edge_length": "edge_length"}))
     try:
         arguments.out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -61,13 +61,6 @@ def demo(arguments: argparse.Namespace) -> None:
     _place(model, arguments)
 
 
-def _load(arguments: argparse.Namespace) -> Model:
-    try:
-        return pectinate.load(arguments.mesh, **_given(arguments, {"units": "units", "field": "field"}))
-    except OSError as error:
-        raise InvalidFile(f"{arguments.mesh}: {error.strerror or error}") from error
-
-
 def _place(model: Model, arguments: argparse.Namespace) -> None:
     summary = model.summary()
     rows = [] if arguments.json or arguments.quiet else report.surface_rows(summary)
@@ -75,7 +68,7 @@ def _place(model: Model, arguments: argparse.Namespace) -> None:
     started = time.perf_counter()
     with ProgressBar("placing", enabled=not arguments.quiet) as bar:
         placement = pectinate.place_streamlines(
-            model, progress=bar, **_given(arguments, {name: name for name in DEFAULTS})
+            model, progress=bar, **given(arguments, {name: name for name in DEFAULTS})
         )
     seconds = time.perf_counter() - started
     _write(placement, arguments)
@@ -99,36 +92,22 @@ def _place(model: Model, arguments: argparse.Namespace) -> None:
 
 def _write(placement: Placement, arguments: argparse.Namespace) -> None:
     """Save and draw what was asked for."""
-    try:
+    with writing():
         for path in _saved_files(arguments):
             tubes = path.suffix.lower() in _TUBE_SUFFIXES
-            placement.save(path, **(_given(arguments, _TUBE_OPTIONS) if tubes else {}))
+            placement.save(path, **(given(arguments, _TUBE_OPTIONS) if tubes else {}))
         if arguments.figure is not None:
             with ProgressBar("drawing", enabled=not arguments.quiet) as bar:
                 bar(0)
-                placement.figure(arguments.figure, **_given(arguments, _FIGURE_OPTIONS))
-    except (OSError, InvalidFile) as error:
-        raise OutputError(str(error)) from error
+                placement.figure(arguments.figure, **given(arguments, _FIGURE_OPTIONS))
 
 
 def _check_outputs(arguments: argparse.Namespace) -> None:
     """Refuse what cannot be written before any long work."""
-    _check_suffixes("--out", arguments.outputs, _SUFFIXES)
-    _check_suffixes("--tubes", arguments.tubes, _TUBE_SUFFIXES)
-    if arguments.figure is not None:
-        kinds = Image.registered_extensions()
-        _check_suffixes("--figure", [arguments.figure], {suffix for suffix in kinds if kinds[suffix] in Image.SAVE})
-    for view in arguments.views or ():
-        resolve_view(view, np.eye(3))
-    for path in _files(arguments):
-        if not path.parent.is_dir():
-            raise OutputError(f"{path}: there is no folder {path.parent}; make it first")
-
-
-def _check_suffixes(flag: str, paths: list[Path], suffixes: Set[str]) -> None:
-    for path in paths:
-        if path.suffix.lower() not in suffixes:
-            raise InvalidOption(f"{flag} {path}: use one of the suffixes {', '.join(sorted(suffixes))}")
+    check_suffixes("--out", arguments.outputs, _SUFFIXES)
+    check_suffixes("--tubes", arguments.tubes, _TUBE_SUFFIXES)
+    check_figure(arguments)
+    check_folders(_files(arguments))
 
 
 def _saved_files(arguments: argparse.Namespace) -> list[Path]:
@@ -138,9 +117,3 @@ def _saved_files(arguments: argparse.Namespace) -> list[Path]:
 def _files(arguments: argparse.Namespace) -> list[Path]:
     """All files that the user asked for."""
     return _saved_files(arguments) + ([] if arguments.figure is None else [arguments.figure])
-
-
-def _given(arguments: argparse.Namespace, names: dict[str, str]) -> dict[str, Any]:
-    """Keywords for the library from what the user said; `names` maps argument to keyword."""
-    said = {keyword: getattr(arguments, name, None) for name, keyword in names.items()}
-    return {keyword: value for keyword, value in said.items() if value is not None}

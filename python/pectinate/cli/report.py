@@ -42,8 +42,8 @@ def topology_rows(summary: dict[str, Any]) -> list[Row]:
     """Rows for extent, components, boundary loops and regions; `summary` is that of a model."""
     low, high = summary["mesh"]["bounding_box"]
     rows = [("extent", " x ".join(f"{b - a:.2f}" for a, b in zip(low, high, strict=True)) + " mm")]
-    rows += _listing("component", [_component(component) for component in summary["components"]])
-    rows += _listing("boundary loop", [_loop(loop) for loop in summary["boundary_loops"]])
+    rows += listing("component", [_component(component) for component in summary["components"]])
+    rows += listing("boundary loop", [_loop(loop) for loop in summary["boundary_loops"]])
     rows += [(f"tag {tag}", f"{area:,.1f} mm2") for tag, area in (summary["area_per_tag"] or {}).items()]
     return rows
 
@@ -62,6 +62,13 @@ def statistics_rows(statistics: dict[str, Any]) -> list[Row]:
         ("coverage", f"{statistics['coverage']:.2%}"),
         ("ends", ", ".join(f"{count:,} {reason}" for reason, count in ends.items())),
     ]
+
+
+def listing(label: str, lines: list[str]) -> list[Row]:
+    """Numbered rows, the first few of many."""
+    rows = [(f"{label} {number}", line) for number, line in enumerate(lines[:_LARGEST_LISTING])]
+    hidden = len(lines) - len(rows)
+    return rows + ([(f"{label}s", f"{hidden:,} more, see --json")] if hidden else [])
 
 
 def _repairs(repairs: dict[str, Any]) -> str:
@@ -90,13 +97,8 @@ def _component(component: dict[str, Any]) -> str:
 def _loop(loop: dict[str, Any]) -> str:
     centroid = ", ".join(f"{x:.1f}" for x in loop["centroid"])
     tags = "" if loop["tags"] is None else f", tags {', '.join(map(str, loop['tags']))}"
-    return f"length {loop['length']:.2f} mm, diameter {loop['diameter']:.2f} mm, at ({centroid}){tags}"
-
-
-def _listing(label: str, lines: list[str]) -> list[Row]:
-    rows = [(f"{label} {number}", line) for number, line in enumerate(lines[:_LARGEST_LISTING])]
-    hidden = len(lines) - len(rows)
-    return rows + ([(f"{label}s", f"{hidden:,} more, see --json")] if hidden else [])
+    names = "".join(f"{name}: " for name in loop["names"])
+    return f"{names}length {loop['length']:.2f} mm, diameter {loop['diameter']:.2f} mm, at ({centroid}){tags}"
 
 
 def _plain(value: Any) -> Any:

@@ -1,8 +1,24 @@
-"""Drawings of surfaces with tubes on them, offscreen: one view, or several on a sheet."""
+"""Drawings of surfaces with tubes and values on them, offscreen, and of the disk that a surface is mapped to."""
 
+from pectinate.figure.disk import draw_disk
+from pectinate.figure.lines import line_tubes
 from pectinate.figure.picture import render_view
 from pectinate.figure.shading import Style
+from pectinate.figure.shape import Layer
 from pectinate.figure.sheet import draw_sheet
+from pectinate.figure.values import SurfaceValues
 from pectinate.figure.views import STANDARD_VIEWS, View, principal_views, standard_view
 
-__all__ = ["STANDARD_VIEWS", "Style", "View", "draw_sheet", "principal_views", "render_view", "standard_view"]
+__all__ = [
+    "STANDARD_VIEWS",
+    "Layer",
+    "Style",
+    "SurfaceValues",
+    "View",
+    "draw_disk",
+    "draw_sheet",
+    "line_tubes",
+    "principal_views",
+    "render_view",
+    "standard_view",
+]

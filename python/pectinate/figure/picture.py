@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from pectinate.errors import InvalidOption
 from pectinate.figure.offscreen import Canvas, open_canvas
-from pectinate.figure.shading import Style, box_downsample, fold_shadow
-from pectinate.figure.shape import Drawing, Triangles, check_drawing, surface_patches, tube_patches
+from pectinate.figure.shading import VALUE_SHADE, Style, box_downsample, fold_shadow
+from pectinate.figure.shape import Drawing, Layer, Triangles, check_drawing, patches
+from pectinate.figure.values import SurfaceValues
 from pectinate.figure.views import View, resolve_view
 
 MARGIN = 0.03
@@ -35,6 +37,8 @@ def render_view(  # noqa: PLR0913
     surface: Triangles,
     tubes: Triangles | None = None,
     *,
+    layers: Sequence[Layer] = (),
+    surface_values: SurfaceValues | ArrayLike | None = None,
     view: str | View = "anterior",
     axes: str = "LPS",
     size: tuple[int, int] = (700, 700),
@@ -52,7 +56,11 @@ def render_view(  # noqa: PLR0913
     surface : (vertices, triangles)
         (V, 3) float in mm and (T, 3) int, counter-clockwise seen from outside.
     tubes : (vertices, triangles), optional
-        Closed tubes, likewise.
+        Closed tubes, likewise, in `style.tube_color`.
+    layers : sequence of Layer
+        More tubes, in colours of their own.
+    surface_values : SurfaceValues or (T,) or (V,) float, optional
+        Numbers per triangle or vertex that colour the outside of the surface.
     view : str or View
         One of `STANDARD_VIEWS`, "principal", or any `View`.
     axes : str
@@ -78,11 +86,13 @@ def render_view(  # noqa: PLR0913
     InvalidMesh
         If there is no triangle to draw, a vertex in use is not finite, or an index is out of range.
     InvalidOption
-        If an option is out of its range.
+        If an option is out of its range, or there is not one value per triangle or vertex.
     RenderingUnavailable
         If there is no offscreen OpenGL; the message names the packages to install.
+    MissingDependency
+        If there are values to show, but Matplotlib is not installed.
     """
-    drawing = check_drawing(surface, tubes)
+    drawing = check_drawing(surface, tubes, layers, surface_values, style)
     points = drawing.points
     looking = resolve_view(view, points, axes)
     if mm_per_pixel is None:
@@ -128,18 +138,17 @@ def draw_frame(canvas: Canvas, drawing: Drawing, frame: Frame, supersampling: in
         RGB premultiplied by alpha, all 0 to 1.
     """
     _check(frame, supersampling)
-    patches = surface_patches(drawing.surface, frame.view, frame.centre, style)
-    if drawing.tubes is not None:
-        patches += tube_patches(drawing.tubes, frame.view, frame.centre, style)
     width, height = frame.size
     fine_size = (width * supersampling, height * supersampling)
-    color, depth = canvas.draw(patches, fine_size, frame.mm_per_pixel / supersampling)
+    seen = patches(drawing, frame.view, frame.centre, style)
+    color, depth = canvas.draw(seen, fine_size, frame.mm_per_pixel / supersampling)
     lit = color.astype(np.float32) / np.float32(255)
     fold_size = _FOLD_SIZE * float(np.linalg.norm(np.ptp(drawing.surface.vertices, axis=0)))
-    if style.fold_darkness > 0 and fold_size > 0:
+    darkness = style.fold_darkness * (1.0 if drawing.colors is None else VALUE_SHADE)
+    if darkness > 0 and fold_size > 0:
         radius = min(max(1, round(0.5 * fold_size / frame.mm_per_pixel)), max(frame.size))
         shadow = fold_shadow(depth, supersampling, radius, 0.5 * fold_size)
-        lit[:, :, :3] *= (1 - np.float32(style.fold_darkness) * shadow)[:, :, None]
+        lit[:, :, :3] *= (1 - np.float32(darkness) * shadow)[:, :, None]
     return box_downsample(lit, supersampling)
 
 

@@ -18,6 +18,8 @@ class Style:
     ----------
     surface_color, inside_color, tube_color : tuple of 3 float
         Colour in full light of the surface, of its inside seen through openings, and of the tubes.
+    no_value_color : tuple of 3 float
+        Colour, where the surface shows values, of what has none.
     background_color : tuple of 3 float
         Colour of the paper.
     tube_gloss : float
@@ -31,11 +33,15 @@ class Style:
     surface_color: Color = (0.93, 0.90, 0.86)
     inside_color: Color = (0.62, 0.55, 0.53)
     tube_color: Color = (0.10, 0.09, 0.09)
+    no_value_color: Color = (0.72, 0.72, 0.72)
     background_color: Color = (1.0, 1.0, 1.0)
     tube_gloss: float = 0.2
     fold_darkness: float = 0.45
     edge_darkness: float = 0.35
 
+
+VALUE_SHADE = 0.6
+"""Share of light and shadow that is left on a surface that shows values, so that their colours can be read."""
 
 # Direction towards each light in picture coordinates, with its strength: upper left, right, viewer.
 _LIGHTS = (((-0.55, 0.65, 0.53), 0.36), ((0.80, 0.05, 0.60), 0.16), ((0.0, 0.0, 1.0), 0.26))
@@ -99,6 +105,12 @@ def light(normals: NDArray[np.float64], edge_darkness: float) -> NDArray[np.floa
         brightness += strength * np.clip(normals @ direction, 0.0, None)
     turned_away = 1.0 - np.clip(normals[:, 2], 0.0, 1.0)
     return np.asarray(brightness * (1.0 - edge_darkness * turned_away**3))
+
+
+def value_light(normals: NDArray[np.float64], edge_darkness: float) -> NDArray[np.float64]:
+    """Brightness as of `light`, but gentle, so that colours can be read: 1, their own, on all that faces the viewer."""
+    facing = light(np.array([[0.0, 0.0, 1.0]]), edge_darkness)
+    return np.asarray(1.0 - VALUE_SHADE * np.clip(1.0 - light(normals, edge_darkness) / facing, 0.0, None))
 
 
 def gloss(normals: NDArray[np.float64]) -> NDArray[np.float64]:

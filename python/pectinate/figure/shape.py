@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pectinate.errors import InvalidMesh
+from pectinate.errors import InvalidMesh, InvalidOption
 from pectinate.figure.offscreen import Patch
-from pectinate.figure.shading import Style, gloss, light, shaded, triangle_normals, vertex_normals
+from pectinate.figure.shading import (
+    Color,
+    Style,
+    gloss,
+    light,
+    shaded,
+    triangle_normals,
+    value_light,
+    vertex_normals,
+)
+from pectinate.figure.values import CornerColors, SurfaceValues, corner_colors
 from pectinate.figure.views import View
 
 Triangles = tuple[ArrayLike, ArrayLike]
@@ -25,31 +36,68 @@ class Shape:
     normals: NDArray[np.float64]
 
 
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """Closed tubes in a colour of their own; `line_tubes` makes them of lines.
+
+    Parameters
+    ----------
+    triangles : (vertices, triangles)
+        (V, 3) float in mm and (T, 3) int, counter-clockwise seen from outside.
+    color : tuple of 3 float
+        Display RGB in full light, 0 to 1.
+    """
+
+    triangles: Triangles
+    color: Color
+
+
 @dataclass(frozen=True)
 class Drawing:
-    """What pictures show: a surface, and tubes on it or None."""
+    """What pictures show: a surface, the colours of its values or None, and tubes with the colour of each."""
 
     surface: Shape
-    tubes: Shape | None
+    colors: CornerColors | None
+    tubes: tuple[tuple[Shape, Color], ...]
 
     @property
     def points(self) -> NDArray[np.float64]:
         """Every vertex that is drawn, (n, 3) float64 in mm."""
-        return np.concatenate([shape.vertices for shape in (self.surface, self.tubes) if shape is not None])
+        return np.concatenate([self.surface.vertices, *(shape.vertices for shape, _ in self.tubes)])
 
 
-def check_drawing(surface: Triangles, tubes: Triangles | None) -> Drawing:
+def check_drawing(
+    surface: Triangles,
+    tubes: Triangles | None,
+    layers: Sequence[Layer],
+    surface_values: SurfaceValues | ArrayLike | None,
+    style: Style,
+) -> Drawing:
     """Check what shall be drawn; tubes without triangles count as no tubes.
 
     Raises
     ------
     InvalidMesh
         If the surface has no triangles, or anything breaks the rules of `check_shape`.
+    InvalidOption
+        If a colour is none, or the values break the rules of `corner_colors`.
     """
     shape = check_shape("surface", surface)
     if shape is None:
         raise InvalidMesh("the surface has no triangles: there is nothing to draw")
-    return Drawing(shape, None if tubes is None else check_shape("tubes", tubes))
+    colors = None
+    if surface_values is not None:
+        vertex_count = len(np.asarray(surface[0]))
+        colors = corner_colors(surface_values, np.asarray(surface[1]), vertex_count, style.no_value_color)
+    given = [] if tubes is None else [Layer(tubes, style.tube_color)]
+    checked = ((check_shape("tubes", layer.triangles), _check_color(layer.color)) for layer in [*given, *layers])
+    return Drawing(shape, colors, tuple((tube, color) for tube, color in checked if tube is not None))
+
+
+def _check_color(color: Color) -> Color:
+    if len(color) != 3 or not all(0 <= channel <= 1 for channel in color):  # noqa: PLR2004
+        raise InvalidOption(f"color {color}: give red, green and blue, each from 0 to 1")
+    return color
 
 
 def check_shape(name: str, arrays: Triangles) -> Shape | None:
@@ -78,23 +126,38 @@ def check_shape(name: str, arrays: Triangles) -> Shape | None:
     return Shape(vertices, triangles, vertex_normals(vertices, triangles))
 
 
-def surface_patches(shape: Shape, view: View, centre: NDArray[np.float64], style: Style) -> list[Patch]:
-    """The surface seen along a view: outside and inside as patches of their own colours."""
-    rotation = view.rotation()
+def patches(drawing: Drawing, view: View, centre: NDArray[np.float64], style: Style) -> list[Patch]:
+    """All that is seen along a view, relative to the middle of the picture."""
+    result = _surface_patches(drawing, view, centre, style)
+    for shape, color in drawing.tubes:
+        result += _tube_patches(shape, color, view, centre, style)
+    return result
+
+
+def _surface_patches(drawing: Drawing, view: View, centre: NDArray[np.float64], style: Style) -> list[Patch]:
+    """The surface: outside and inside as patches of their own colours."""
+    shape, rotation = drawing.surface, view.rotation()
     vertices, normals = (shape.vertices - centre) @ rotation.T, shape.normals @ rotation.T
     faces_viewer = triangle_normals(vertices, shape.triangles)[:, 2] >= 0
-    outside = shaded(style.surface_color, light(normals, style.edge_darkness))
+    facing = shape.triangles[faces_viewer]
+    if drawing.colors is None:
+        outside = Patch(vertices, facing, shaded(style.surface_color, light(normals, style.edge_darkness)))
+    else:
+        corners, colors = facing.ravel(), drawing.colors.colors[faces_viewer].reshape(-1, 3)
+        lit = shaded(colors, value_light(normals[corners], style.edge_darkness))
+        # Each triangle has corners of its own, whose colours it does not share with its neighbours.
+        outside = Patch(vertices[corners], np.arange(len(corners)).reshape(-1, 3), lit)
     inside = shaded(style.inside_color, light(-normals, style.edge_darkness))
-    sides = ((shape.triangles[faces_viewer], outside), (shape.triangles[~faces_viewer], inside))
-    return [Patch(vertices, triangles, colors) for triangles, colors in sides if len(triangles)]
+    sides = (outside, Patch(vertices, shape.triangles[~faces_viewer], inside))
+    return [patch for patch in sides if len(patch.triangles)]
 
 
-def tube_patches(shape: Shape, view: View, centre: NDArray[np.float64], style: Style) -> list[Patch]:
+def _tube_patches(shape: Shape, color: Color, view: View, centre: NDArray[np.float64], style: Style) -> list[Patch]:
     """The halves of the tubes that face the viewer; the others are hidden, because tubes are closed."""
     rotation = view.rotation()
     vertices, normals = (shape.vertices - centre) @ rotation.T, shape.normals @ rotation.T
     facing = shape.triangles[triangle_normals(vertices, shape.triangles)[:, 2] > 0]
-    colors = shaded(style.tube_color, light(normals, 0.0), style.tube_gloss * gloss(normals))
+    colors = shaded(color, light(normals, 0.0), style.tube_gloss * gloss(normals))
     return [Patch(vertices, facing, colors)] if len(facing) else []
 
 

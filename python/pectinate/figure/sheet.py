@@ -6,31 +6,32 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import NDArray
-from PIL import Image, ImageDraw, ImageFont
+from numpy.typing import ArrayLike, NDArray
+from PIL import Image, ImageDraw
 
 from pectinate.errors import InvalidOption
+from pectinate.figure.color_bar import beside_color_bar
 from pectinate.figure.offscreen import open_canvas
 from pectinate.figure.picture import Frame, draw_frame, extent, fitting_scale, middle, on_background
 from pectinate.figure.shading import Style
-from pectinate.figure.shape import Triangles, check_drawing
+from pectinate.figure.shape import Layer, Triangles, check_drawing
+from pectinate.figure.values import SurfaceValues
 from pectinate.figure.views import STANDARD_VIEWS, View, resolve_view
+from pectinate.figure.writing import LETTERS, Rgb, font, ink_color, paper_color
 
-# On light paper, on dark paper.
-_DARK_INK, _LIGHT_INK = (60, 56, 54), (230, 228, 224)
-# Of the height of a view: the band for its label, the letters in it.
-_LABEL_BAND, _LETTERS = 0.09, 0.045
+# Of the height of a view: the band for its label.
+_LABEL_BAND = 0.09
 # Scale bars are one of these times a power of ten, at most this share of a view's width.
 _ROUND_NUMBERS = (1, 2, 5)
 _LONGEST_BAR = 0.28
-
-_Rgb = tuple[int, int, int]
 
 
 def draw_sheet(  # noqa: PLR0913
     surface: Triangles,
     tubes: Triangles | None = None,
     *,
+    layers: Sequence[Layer] = (),
+    surface_values: SurfaceValues | ArrayLike | None = None,
     views: str | View | Sequence[str | View] = STANDARD_VIEWS,
     axes: str = "LPS",
     columns: int | None = None,
@@ -47,6 +48,8 @@ def draw_sheet(  # noqa: PLR0913
     ----------
     surface, tubes : (vertices, triangles)
         As in `render_view`.
+    layers, surface_values
+        As in `render_view`. Values bring a colour bar beside the views.
     views : str, View or sequence of them
         What to show, row by row.
     axes : str
@@ -71,10 +74,10 @@ def draw_sheet(  # noqa: PLR0913
 
     Raises
     ------
-    InvalidMesh, InvalidOption, RenderingUnavailable
+    InvalidMesh, InvalidOption, RenderingUnavailable, MissingDependency
         As in `render_view`; InvalidOption also for no view or columns below 1.
     """
-    drawing = check_drawing(surface, tubes)
+    drawing = check_drawing(surface, tubes, layers, surface_values, style)
     named = [views] if isinstance(views, str | View) else list(views)
     looking = [resolve_view(view, drawing.points, axes) for view in named]
     columns = _check_columns(columns, len(looking))
@@ -94,8 +97,8 @@ def draw_sheet(  # noqa: PLR0913
     names = [view.name for view in looking] if labels else None
     sheet = _arrange(pictures, names, columns, title, style)
     if scale_bar:
-        _draw_bar(sheet, scale, size, _ink(style))
-    return sheet
+        _draw_bar(sheet, scale, size, ink_color(style))
+    return sheet if drawing.colors is None else beside_color_bar(sheet, drawing.colors, size[1], style)
 
 
 def _check_columns(columns: int | None, count: int) -> int:
@@ -116,19 +119,19 @@ def _arrange(
     band = round(_LABEL_BAND * height) if names else 0
     top = round(1.5 * _LABEL_BAND * height) if title else 0
     rows = math.ceil(len(pictures) / columns)
-    sheet = Image.new("RGB", (columns * width, top + rows * (height + band)), _paper(style))
-    draw, ink = ImageDraw.Draw(sheet), _ink(style)
+    sheet = Image.new("RGB", (columns * width, top + rows * (height + band)), paper_color(style))
+    draw, ink = ImageDraw.Draw(sheet), ink_color(style)
     for i, picture in enumerate(pictures):
         x, y = i % columns * width, top + i // columns * (height + band)
         sheet.paste(Image.fromarray(picture), (x, y))
         if names:
-            draw.text((x + width / 2, y + height + band / 2), names[i], ink, _font(_LETTERS * height), anchor="mm")
+            draw.text((x + width / 2, y + height + band / 2), names[i], ink, font(LETTERS * height), anchor="mm")
     if title:
-        draw.text((sheet.width / 2, top / 2), title, ink, _font(1.4 * _LETTERS * height), anchor="mm")
+        draw.text((sheet.width / 2, top / 2), title, ink, font(1.4 * LETTERS * height), anchor="mm")
     return sheet
 
 
-def _draw_bar(sheet: Image.Image, mm_per_pixel: float, size: tuple[int, int], ink: _Rgb) -> None:
+def _draw_bar(sheet: Image.Image, mm_per_pixel: float, size: tuple[int, int], ink: Rgb) -> None:
     """Draw a bar of a round length in the sheet's lower right corner."""
     length = _round_length(_LONGEST_BAR * size[0] * mm_per_pixel)
     margin, thickness = round(0.04 * size[1]), max(2, round(0.006 * size[1]))
@@ -137,7 +140,7 @@ def _draw_bar(sheet: Image.Image, mm_per_pixel: float, size: tuple[int, int], in
     # Pillow's rectangles include their last row and column.
     draw.rectangle((right - pixels, bottom - thickness, right - 1, bottom - 1), fill=ink)
     text = f"{length:g} mm"
-    draw.text((right - pixels / 2, bottom - 0.015 * size[1]), text, ink, _font(_LETTERS * size[1]), anchor="mb")
+    draw.text((right - pixels / 2, bottom - 0.015 * size[1]), text, ink, font(LETTERS * size[1]), anchor="mb")
 
 
 def _round_length(longest: float) -> float:
@@ -145,16 +148,3 @@ def _round_length(longest: float) -> float:
     power = 10.0 ** math.floor(math.log10(longest))
     # One times the power always counts: the logarithm may have rounded a length just below a power of ten up to it.
     return max(factor * power for factor in _ROUND_NUMBERS if factor == 1 or factor * power <= longest)
-
-
-def _paper(style: Style) -> _Rgb:
-    red, green, blue = (round(255 * channel) for channel in style.background_color)
-    return red, green, blue
-
-
-def _ink(style: Style) -> _Rgb:
-    return _DARK_INK if sum(_paper(style)) > sum(_LIGHT_INK) / 2 else _LIGHT_INK
-
-
-def _font(size: float) -> ImageFont.FreeTypeFont | ImageFont.ImageFont:
-    return ImageFont.load_default(max(8, round(size)))

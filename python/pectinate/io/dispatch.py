@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pectinate.errors import InvalidFile, InvalidMesh, InvalidOption
+from pectinate.errors import InvalidField, InvalidFile, InvalidMesh, InvalidOption
 from pectinate.io import fields, opencarp, trimesh_io, vtk
 from pectinate.io.objects import surface_from_arrays
 from pectinate.io.units import from_millimetres
@@ -18,6 +19,7 @@ from pectinate.model import Model, SurfaceData
 
 _PATH_KINDS = (str, os.PathLike)
 _SUFFIXES = (*opencarp.SUFFIXES, *vtk.SUFFIXES, *trimesh_io.SUFFIXES)
+_SECOND = ("given", "none", "transverse", "normal")
 
 
 def load(source: Any, *, units: str = "auto", field: Any = "auto", field_location: str = "auto") -> Model:
@@ -63,7 +65,15 @@ def load(source: Any, *, units: str = "auto", field: Any = "auto", field_locatio
     return Model.from_data(data)
 
 
-def save_surface(model: Model, path: str | os.PathLike[str], *, units: str = "auto") -> list[Path]:
+def save_surface(  # noqa: PLR0913
+    model: Model,
+    path: str | os.PathLike[str],
+    *,
+    units: str = "auto",
+    second: str = "given",
+    per_vertex: bool = False,
+    cell_data: Mapping[str, NDArray[np.float64]] | None = None,
+) -> list[Path]:
     """Write what a model's source held, in the order of the source, in the format that the suffix names.
 
     openCARP (`.pts`, `.elem`, `.lon`) and VTK files (`.vtp`, `.vtu`, `.vtk`) hold vectors, second vectors and tags per
@@ -79,6 +89,15 @@ def save_surface(model: Model, path: str | os.PathLike[str], *, units: str = "au
     units
         "mm", "um", "cm" or "m"; "auto" writes openCARP in micrometres, as its solvers want it, all else in millimetres.
         (State the unit when you load a surface of less than 1 mm again: "auto" takes it for millimetres.)
+    second
+        Second vector of each triangle: "given", that of the source if there is one; "none"; "transverse", in the
+        surface across the fibre; "normal", the outward normal. With the last two, fibres are written as unit vectors
+        in the surface.
+    per_vertex
+        VTK files get the field per vertex too, as a point array `fiber`; see `Model.vertex_directions`.
+    cell_data
+        More arrays for VTK files, (T, ...) float per mesh triangle by name; NaN where the mesh has no such triangle.
+        Left out in other formats.
 
     Returns
     -------
@@ -89,7 +108,9 @@ def save_surface(model: Model, path: str | os.PathLike[str], *, units: str = "au
     InvalidFile
         The suffix is unknown or the file cannot be written.
     InvalidOption
-        An unknown unit.
+        An unknown unit or kind of second vector.
+    InvalidField
+        Second vectors or vectors per vertex of a surface without a field.
     MissingDependency
         A VTK file without PyVista.
     """
@@ -103,10 +124,19 @@ def save_surface(model: Model, path: str | os.PathLike[str], *, units: str = "au
     if suffix in trimesh_io.SUFFIXES:
         trimesh_io.write_trimesh(path, vertices, data.triangles)
         return [path]
-    extras = {"vectors": _triangle_vectors(model), "second_vectors": data.second_vectors}
+    vectors, second_vectors = _vector_pair(model, second)
+    extras = {"vectors": vectors, "second_vectors": second_vectors}
     if suffix in opencarp.SUFFIXES:
         return opencarp.write_opencarp(path, vertices, data.triangles, tags=data.tags, **extras)
-    vtk.write_vtk(path, vertices, data.triangles, tags=data.tags, **extras)
+    vtk.write_vtk(
+        path,
+        vertices,
+        data.triangles,
+        tags=data.tags,
+        vertex_vectors=model.vertex_directions() if per_vertex else None,
+        cell_data={name: model.per_input_triangle(values) for name, values in (cell_data or {}).items()},
+        **extras,
+    )
     return [path]
 
 
@@ -168,12 +198,26 @@ def _unknown_suffix(path: Path) -> InvalidFile:
     return InvalidFile.at(path, rule, f"use one of {', '.join(_SUFFIXES)}")
 
 
+def _vector_pair(model: Model, second: str) -> tuple[NDArray[np.float64] | None, NDArray[np.float64] | None]:
+    """Vectors and second vectors per triangle of the source."""
+    if second not in _SECOND:
+        raise InvalidOption(f"second = {second!r} is not known; use one of: {', '.join(_SECOND)}")
+    if second in ("given", "none"):
+        return _triangle_vectors(model), model.data.second_vectors if second == "given" else None
+    if model.field is None:
+        raise InvalidField(
+            f"{model.data.source} has no orientation field, so it has no second vectors; use second='none'"
+        )
+    fibres, normals = model.field.directions, model.mesh.triangle_normals
+    known = fibres.any(axis=1, keepdims=True)
+    across = np.cross(normals, fibres) if second == "transverse" else np.where(known, normals, 0.0)
+    return model.per_input_triangle(fibres, missing=0.0), model.per_input_triangle(across, missing=0.0)
+
+
 def _triangle_vectors(model: Model) -> NDArray[np.float64] | None:
     """Vectors per triangle of the source, as given or else as the field has them."""
     if model.data.vectors is not None and model.data.vector_location == "triangle":
         return model.data.vectors
     if model.field is None:
         return None
-    vectors = np.zeros((len(model.data.triangles), 3))
-    vectors[model.mesh.input_triangle] = model.field.directions
-    return vectors
+    return model.per_input_triangle(model.field.directions, missing=0.0)

@@ -89,10 +89,12 @@ def write_vtk(  # noqa: PLR0913
     vectors: NDArray[np.float64] | None = None,
     second_vectors: NDArray[np.float64] | None = None,
     tags: NDArray[np.int64] | None = None,
+    vertex_vectors: NDArray[np.float64] | None = None,
+    cell_data: Mapping[str, NDArray[np.float64]] | None = None,
 ) -> None:
     """Write a surface as `.vtp`, `.vtk` (poly data) or `.vtu`, binary, with cell arrays `fiber`, `sheet`, `elemTag`.
 
-    Parameters are as in `write_opencarp`.
+    Parameters are as in `write_opencarp`, with `vertex_vectors` (V, 3) for a point array `fiber`, and more cell arrays.
 
     Raises
     ------
@@ -107,9 +109,12 @@ def write_vtk(  # noqa: PLR0913
         dataset = pyvista.UnstructuredGrid(faces, np.full(len(triangles), TRIANGLE, np.uint8), vertices)
     else:
         dataset = pyvista.PolyData(vertices, faces)
-    for name, values in (("fiber", vectors), ("sheet", second_vectors), ("elemTag", tags)):
+    arrays = {"fiber": vectors, "sheet": second_vectors, "elemTag": tags, **(cell_data or {})}
+    for name, values in arrays.items():
         if values is not None:
             dataset.cell_data[name] = values
+    if vertex_vectors is not None:
+        dataset.point_data["fiber"] = vertex_vectors
     save_dataset(dataset, path)
 
 
