@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "detail/connection.hpp"
@@ -86,10 +87,13 @@ class FieldInterpolator::State {
       system_.update(rows);
       cholesky_.eliminate_again(system_.matrix(), system_.right_hand_side(), rows);
       ready_ = true;
+    } else if (last_) {
+      return *last_;
     }
-    Eigen::VectorXcd phase = cholesky_.solution();
-    if (std::ranges::find(is_constrained_, false) != is_constrained_.end()) phase = smoothest();
-    return field_of(phase, constraints);
+    last_.reset();
+    const bool any_free = std::ranges::find(is_constrained_, false) != is_constrained_.end();
+    last_ = field_of(any_free ? smoothest() : cholesky_.solution(), constraints);
+    return *last_;
   }
 
  private:
@@ -232,6 +236,7 @@ class FieldInterpolator::State {
   std::vector<std::int32_t> triangle_of_;  ///< per node
   std::vector<bool> is_constrained_;       ///< per component
   bool ready_ = false;                     ///< the factorization is that of the system
+  std::optional<Interpolation> last_;
 };
 
 FieldInterpolator::FieldInterpolator(const SurfaceMesh& mesh)

@@ -163,8 +163,7 @@ class ReferenceFrame:
 class Smoothing:
     field: OrientationField
     moved_angles: _Floats
-    iterations: int
-    converged: bool
+    outliers: NDArray[np.uint8]
 
 class Transfer:
     field: OrientationField
@@ -279,7 +278,6 @@ def smooth(
     *,
     length: float = ...,
     outlier_angle: float = ...,
-    max_iterations: int = ...,
     fill_missing: bool = ...,
     barriers: Sequence[int] | _Ints | None = None,
 ) -> Smoothing: ...

@@ -31,18 +31,15 @@ class SmoothedField:
         The surface with the smoothed field.
     moved_angles
         (T,) float64 per mesh triangle, radians in [0, pi/2]: how far the fibre was moved; NaN where it had or has none.
-    iterations
-        Re-weighted solves.
-    converged
-        Whether they came to rest.
+    outliers
+        (T,) bool per mesh triangle: the fibre was replaced by what the others around it say.
     options
         What was asked for; the library's defaults for the rest.
     """
 
     model: Model
     moved_angles: NDArray[np.float64]
-    iterations: int
-    converged: bool
+    outliers: NDArray[np.bool_]
     options: dict[str, Any]
 
     @property
@@ -69,37 +66,35 @@ class SmoothedField:
             "options": options,
             "moved": angle_statistics(self.moved_angles),
             "moved_per_region": angle_statistics_per_region(self.moved_angles, self.model.tags),
-            "iterations": self.iterations,
-            "converged": self.converged,
+            "outliers": int(np.count_nonzero(self.outliers)),
         }
 
 
-def smooth(  # noqa: PLR0913
+def smooth(
     surface: Any,
     *,
     length: float | None = None,
     barriers: Barriers = "none",
     outlier_angle: float | None = None,
-    max_iterations: int | None = None,
     fill_missing: bool = False,
 ) -> SmoothedField:
     """Smooth a measured field: without signs, and hardly drawn by outliers.
 
-    Minimises Huber's loss of exp(2 i theta) against the measurement plus length^2 times its Dirichlet energy, with
-    parallel transport between triangles.
+    Fibres that differ from the consensus around them are replaced by what the others say; these are smoothed lightly.
+    The consensus minimises a robust loss of exp(2 i theta) plus a Dirichlet energy, with parallel transport between
+    triangles.
 
     Parameters
     ----------
     surface
         A `Model`, or anything that `pectinate.load` takes.
     length
-        mm, over which fibres are brought to agree; by default 1.5.
+        mm: the size of what is smoothed away, the standard deviation of the weight that falls off around a fibre;
+        by default 1.5.
     barriers
         "tags": nothing is exchanged between regions of different tag.
     outlier_angle
-        Radians in (0, pi/2]: a fibre farther from its smoothed neighbourhood loses influence; by default 10 degrees.
-    max_iterations
-        Re-weighted solves, 1 to 1000; by default 30.
+        Radians in (0, pi/2]: a fibre that differs by more from those around it is replaced; by default 17 degrees.
     fill_missing
         Give a direction to triangles that have none too.
 
@@ -112,15 +107,14 @@ def smooth(  # noqa: PLR0913
     """
     model = load(surface)
     field = model.require_field()
-    options = {"length": length, "outlier_angle": outlier_angle, "max_iterations": max_iterations}
+    options = {"length": length, "outlier_angle": outlier_angle}
     given: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
     given["fill_missing"] = fill_missing
     result = _core.smooth(model.mesh, field, barriers=_labels(model, barriers), **given)
     return SmoothedField(
         model=model.with_field(result.field, "the field is smoothed"),
         moved_angles=result.moved_angles,
-        iterations=int(result.iterations),
-        converged=bool(result.converged),
+        outliers=result.outliers.astype(bool),
         options={**given, "barriers": barriers},
     )
 

@@ -203,18 +203,20 @@ TEST_CASE("constraints: of demands that contradict each other the first listed p
   CHECK(fan.conflicts[0].dropped == 2);
 }
 
-TEST_CASE("constraints: a tract that crosses itself keeps its first passage") {
+TEST_CASE("constraints: a tract that crosses itself keeps its longest passage") {
   const auto mesh = grid(6, 6).mesh();
-  const Vec3 crossing{2.7, 2.3, 0};
-  const std::vector<Vec3> points{{0.7, 2.3, 0}, {4.7, 2.3, 0}, {4.7, 4.3, 0}, {2.7, 4.3, 0}, {2.7, 0.3, 0}};
+  const Vec3 crossing{2.9, 2.3, 0};  // where it is 0.7 long to the right and 0.9 upwards
+  const std::vector<Vec3> points{{0.7, 2.3, 0}, {4.7, 2.3, 0}, {4.7, 4.3, 0}, {2.9, 4.3, 0}, {2.9, 0.3, 0}};
   const auto t = nearest_surface_points(mesh, std::vector{crossing})[0].triangle;
-  const auto constraints = make_constraints(mesh, Tracts{tract({{0.7, 1.3, 0}, {0.8, 1.3, 0}}), tract(points)}, {});
-  CHECK(line_angle(vector(constraint_of(constraints, t).direction), Vector(1, 0, 0)) < 1e-12);
-  REQUIRE(!constraints.conflicts.empty());
-  for (const auto& conflict : constraints.conflicts) {
-    CHECK(conflict.kept == 1);
-    CHECK(conflict.dropped == 1);
-    CHECK(conflict.angle == doctest::Approx(90 * degree).epsilon(1e-12));
+  for (const auto& drawn : {tract(points), backwards(tract(points))}) {
+    const auto constraints = make_constraints(mesh, Tracts{tract({{0.7, 1.3, 0}, {0.8, 1.3, 0}}), drawn}, {});
+    CHECK(line_angle(vector(constraint_of(constraints, t).direction), Vector(0, 1, 0)) < 1e-12);
+    REQUIRE(!constraints.conflicts.empty());
+    for (const auto& conflict : constraints.conflicts) {
+      CHECK(conflict.kept == 1);
+      CHECK(conflict.dropped == 1);
+      CHECK(conflict.angle == doctest::Approx(90 * degree).epsilon(1e-12));
+    }
   }
 }
 
@@ -334,6 +336,17 @@ TEST_CASE("boundary: free loops and loops without a condition ask for nothing") 
   CHECK(make_constraints(mesh, {}, {}).triangles.empty());
   CHECK(make_constraints(mesh, {}, Conditions{{0, free}, {1, free}}).triangles.empty());
   CHECK(make_constraints(mesh, {}, Conditions{{1, perpendicular}}).triangles.size() == 12);
+}
+
+TEST_CASE("boundary: a hard tract is met exactly, also where the boundary nearly agrees") {
+  const auto mesh = ring(12, 4).mesh();
+  const auto across = tract({{0.985, 0.28, 0}, {1.8, 0.28, 0}});
+  const auto constraints = make_constraints(mesh, Tracts{across}, Conditions{{1, perpendicular, hard}});
+  CHECK(constraints.conflicts.empty());
+  for (const auto& constraint : constraints.triangles) {
+    if (constraint.tract < 0) continue;
+    CHECK(line_angle(vector(constraint.direction), Vector(1, 0, 0)) < 1e-12);
+  }
 }
 
 TEST_CASE("boundary: any tract prevails over it, or is averaged with it") {

@@ -41,8 +41,9 @@ OrientationField power_field(const SurfaceMesh& mesh, double power) {
 }  // namespace
 
 TEST_CASE("the half turns of any field add up to twice the Euler characteristic") {
-  for (const Soup& soup : {tetrahedron(), sphere(2), torus(14, 9), grid(5, 4), cylinder(9, 3, 1, 2), annulus(12, 3, 1, 2),
-                           moebius_strip(16, 3), klein_bottle(17, 11), demo(), together(torus(9, 7), grid(3, 3))}) {
+  for (const Soup& soup :
+       {tetrahedron(), sphere(2), torus(14, 9), grid(5, 4), cylinder(9, 3, 1, 2), annulus(12, 3, 1, 2),
+        moebius_strip(16, 3), klein_bottle(17, 11), demo(), together(torus(9, 7), grid(3, 3))}) {
     const SurfaceMesh mesh = soup.mesh();
     for (std::uint64_t seed = 0; seed < 5; ++seed) {
       CHECK(all_half_turns(field_topology(mesh, random_field(mesh, seed))) == 2 * euler_characteristic(mesh));
@@ -72,9 +73,8 @@ TEST_CASE("a singularity of index k/2 is found where it is, with k half turns") 
 TEST_CASE("fibres along or across a loop make no turn against it") {
   for (const bool along : {true, false}) {
     const SurfaceMesh mesh = annulus(30, 4, 1, 2).mesh();
-    const auto field = field_of(mesh, [&](const Vector& c, const Vector& n) -> Vector {
-      return along ? n.cross(c) : c;
-    });
+    const auto field =
+        field_of(mesh, [&](const Vector& c, const Vector& n) -> Vector { return along ? n.cross(c) : c; });
     const auto topology = field_topology(mesh, field);
     CHECK(topology.singularities.empty());
     CHECK(topology.loop_half_turns == std::vector<std::optional<std::int32_t>>{0, 0});

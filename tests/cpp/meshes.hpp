@@ -128,7 +128,8 @@ inline Soup annulus(int around, int rows, double inner, double outer) {
       soup.vertices.push_back({radius * std::cos(turn(i, around)), radius * std::sin(turn(i, around)), 0});
     }
   }
-  soup.triangles = chart_triangles(around, rows, [=](int i, int j) { return (around - i % around) % around + around * j; });
+  soup.triangles =
+      chart_triangles(around, rows, [=](int i, int j) { return (around - i % around) % around + around * j; });
   return soup;
 }
 

@@ -62,7 +62,7 @@ struct TriangleConstraint {
 };
 
 /// Two demands on one triangle that contradict each other. The first listed tract prevails; any tract over a boundary;
-/// of a tract that crosses itself the first passage.
+/// of a tract that crosses itself its longest passage in the triangle.
 struct ConstraintConflict {
   std::int32_t triangle;
   std::int32_t kept,
@@ -99,8 +99,9 @@ std::int32_t nearest_boundary_loop(const SurfaceMesh& mesh, const Vec3& point);
 /// weighted by length. The triangles along a boundary loop get its tangent, smoothed over four edges; one whose sides
 /// are all on the loop gets none.
 ///
-/// Demands that differ by at most `conflict_angle` are averaged as lines by their weights; hard ones over weighted
-/// ones. The sense of a tract means nothing, nor does their order where there is no conflict.
+/// Demands that differ by at most `conflict_angle` are averaged as lines by their weights; hard ones prevail over
+/// weighted ones, and hard tracts over hard boundaries. The sense of a tract means nothing, nor does their order where
+/// there is no conflict.
 ///
 /// Throws InvalidOption, naming the tract or the condition, for: fewer than two distinct points; a point that is not
 /// finite or too far away; consecutive points on different components; a loop that does not exist or is given twice;

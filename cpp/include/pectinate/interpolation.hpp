@@ -37,7 +37,7 @@ class FieldInterpolator {
   FieldInterpolator& operator=(FieldInterpolator&&) noexcept;
   ~FieldInterpolator();
 
-  /// The field under these constraints; what has not changed since the last call costs nothing. Hard constraints are
+  /// The field under these constraints; the same as in the last call cost nothing. Hard constraints are
   /// met exactly. Throws InvalidField for a triangle that does not exist or is given twice, a direction that is zero,
   /// not finite or normal to its triangle, and a weight that is not positive.
   Interpolation interpolate(std::span<const TriangleConstraint> constraints);

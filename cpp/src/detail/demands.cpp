@@ -22,14 +22,20 @@ double line_angle(const Phase& a, const Phase& b) {
   return std::abs(std::arg(a * std::conj(b))) / 2;
 }
 
-/// The average of demands that agree; where any is hard, of the hard ones.
+bool is_hard_tract(const Demand& demand) {
+  return is_hard(demand) && demand.tract >= 0;
+}
+
+/// The average of demands that agree; where any is hard, of the hard ones, and of hard tracts without the boundary's.
 Demand average(std::span<const Demand> kept) {
   const bool any_hard = std::any_of(kept.begin(), kept.end(), is_hard);
+  const bool any_hard_tract = std::any_of(kept.begin(), kept.end(), is_hard_tract);
   Demand result{kept[0].triangle, 0, 0, 0};
   const Demand* first = nullptr;
   double total = 0;
   for (const auto& demand : kept) {
     if (any_hard && !is_hard(demand)) continue;
+    if (any_hard_tract && !is_hard_tract(demand)) continue;
     if (!first) first = &demand;
     const double weight = any_hard ? 1 : demand.weight;
     result.phase += weight * demand.phase;
@@ -110,7 +116,10 @@ SettledDemands settle(std::vector<Demand> demands, double conflict_angle) {
 SettledDemands tract_demands(const SurfaceMesh& mesh, const TractCurve& curve, const Tract& tract, std::int32_t index,
                              double conflict_angle) {
   std::vector<Demand> demands;
-  for (const auto& passage : passages(mesh, curve)) {
+  auto all = passages(mesh, curve);
+  // Where a tract crosses itself the longest passage prevails, whichever end it was drawn from.
+  std::stable_sort(all.begin(), all.end(), [](const Passage& a, const Passage& b) { return a.length > b.length; });
+  for (const auto& passage : all) {
     demands.push_back({passage.triangle, phase_of(mesh, passage), passage.length, index});
   }
   auto settled = settle(std::move(demands), conflict_angle);

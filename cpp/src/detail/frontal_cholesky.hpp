@@ -54,14 +54,15 @@ class FrontalCholesky {
     std::vector<std::int32_t> in_parent;  ///< of each of the rows, its place in the parent's front
     std::vector<std::int32_t> children;
     bool keeps_contribution = true;
-    Block columns;       ///< of the factor: (count + rows) x count
-    Block contribution;  ///< to the parent: rows x rows, lower triangle
+    Block columns;                        ///< of the factor: (count + rows) x count
+    Block contribution;                   ///< to the parent: rows x rows, lower triangle
     Eigen::VectorXcd reduced, passed_on;  ///< right hand side of the columns, and what the rows get of it
   };
 
   void collect_entries(std::span<const Edge> edges);
   using Columns = std::vector<std::vector<std::int32_t>>;
-  std::vector<std::int32_t> rows_below(std::int32_t column, const Columns& below, std::span<const std::int32_t> children);
+  std::vector<std::int32_t> rows_below(std::int32_t column, const Columns& below,
+                                       std::span<const std::int32_t> children);
   void make_fronts(const std::vector<std::int32_t>& parents);
   void link_fronts();
   /// From the given nodes up to the roots, with what was not kept below.
@@ -74,7 +75,7 @@ class FrontalCholesky {
   std::vector<std::int32_t> node_;     ///< per place
   std::vector<std::int32_t> offsets_;  ///< per place, of its column's entries
   std::vector<Entry> entries_;
-  std::vector<Front> fronts_;  ///< children first
+  std::vector<Front> fronts_;           ///< children first
   std::vector<std::int32_t> front_of_;  ///< per place
   // Scratch space.
   std::vector<std::int32_t> local_;

@@ -19,7 +19,6 @@ from pectinate.cli.shared_arguments import (
     loop,
     loop_pair,
     point,
-    whole,
 )
 from pectinate.comparison import HOW
 from pectinate.interpolation import METHODS
@@ -74,7 +73,6 @@ def _add_smooth(subparsers: argparse._SubParsersAction[Parser]) -> None:
     group.add_argument(
         "--outlier-angle", type=degrees, metavar="DEGREES", help="fibres farther from their neighbourhood lose weight"
     )
-    group.add_argument("--max-iterations", type=whole, metavar="N", help="re-weighted solves at most")
     group.add_argument("--fill-missing", action="store_true", help="give a direction to triangles that have none too")
     _add_outputs(parser)
     add_common(parser)

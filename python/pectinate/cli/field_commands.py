@@ -29,7 +29,7 @@ _SUFFIXES = frozenset({*opencarp.SUFFIXES, *vtk.SUFFIXES})
 # The keywords of the library by argument.
 _FRAME = {"outer": "outer_loop", "inner": "inner_loop", "inner_point": "inner_point"}
 _INTERPOLATION = {name: name for name in ("method", "maximum_distance", "conflict_angle")} | _FRAME
-_SMOOTHING = {name: name for name in ("length", "barriers", "outlier_angle", "max_iterations", "fill_missing")}
+_SMOOTHING = {name: name for name in ("length", "barriers", "outlier_angle", "fill_missing")}
 _COMPARISON = {"how": "how", "maximum_distance": "maximum_distance", "pairs": "loop_pairs"}
 
 

@@ -46,10 +46,9 @@ def disk_rows(found: dict[str, Any]) -> list[Row]:
 
 def smoothing_rows(found: dict[str, Any]) -> list[Row]:
     """Rows about a smoothed field; `found` is the report of a `SmoothedField`."""
-    end = "converged" if found["converged"] else "not converged: allow more"
     return [
         *_angle_rows("moved by", found["moved"], found["moved_per_region"]),
-        ("iterations", f"{found['iterations']}, {end}"),
+        ("outliers replaced", f"{found['outliers']:,}"),
     ]
 
 
