@@ -58,7 +58,7 @@ lint-python: $(STAMPS)/lint
 lint-cpp: $(STAMPS)/lint $(TIDY_BUILD)/compile_commands.json
 	@$(BIN)/clang-format --dry-run -Werror $(CPP_FILES)
 	@find cpp/src bindings -name '*.cpp' -print0 \
-	  | xargs -0 -n 1 -P $(JOBS) $(BIN)/clang-tidy -p $(TIDY_BUILD) --quiet
+	  | xargs -0 -n 1 -P $(JOBS) $(BIN)/clang-tidy -p $(TIDY_BUILD) --quiet --extra-arg=-fdelayed-template-parsing
 
 .PHONY: format
 format: $(STAMPS)/lint  ## format all sources in place

@@ -11,7 +11,6 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image, ImageDraw, ImageFont
 
 import pectinate
@@ -30,6 +29,8 @@ POSTERIOR = View("posterior", (0, -1, 0), (0, 0, 1))
 APPENDAGE = View("from the left and above", (-0.75, 0.6, -0.25), (0, 0, 1))
 TRACT_GROUPS = ("Bachmann", "septopulmonary", "T,", "appendage")
 SHADES = 64
+# Four edges: noise that differs from triangle to triangle.
+SMOOTHING_LENGTH = 4.0
 
 
 def demo_atrium() -> Image.Image:
@@ -93,8 +94,8 @@ def noise() -> Image.Image:
     tracts = draw_sheet(surface, layers=[demo.drawn_lines(constraints)], views=named("tracts"), **look)
     raw, smoothed = [panel("A", tracts)], [Image.new("RGB", tracts.size, PAPER)]
     for letters, degrees in (("BE", 0), ("CF", 5), ("DG", 10)):
-        field = with_noise(demo.mesh, clean, np.radians(degrees))
-        smooth_field = _core.smooth(demo.mesh, field, length=1.5).field
+        field = noisy(demo, clean, degrees)
+        smooth_field = _core.smooth(demo.mesh, field, length=SMOOTHING_LENGTH).field
         for row, letter, what in zip((raw, smoothed), letters, (field, smooth_field), strict=True):
             placement = demo.place(what, 1.6)
             name = f"{degrees} degrees" + (", smoothed" if row is smoothed else "")
@@ -108,9 +109,8 @@ def values() -> Image.Image:
     demo = DemoFields()
     constraints = demo.constraints(TRACT_GROUPS)
     interpolation = demo.interpolate(constraints)
-    noisy = with_noise(demo.mesh, interpolation.field, np.radians(10))
-    smooth_field = _core.smooth(demo.mesh, noisy, length=1.5).field
-    left = angles_between(smooth_field.directions, interpolation.field.directions)
+    smoothed = _core.smooth(demo.mesh, noisy(demo, interpolation.field, 10), length=SMOOTHING_LENGTH).field
+    left = np.degrees(_core.angles_between(smoothed, interpolation.field))
     confidence = SurfaceValues(interpolation.confidence, value_range=(0, 1), label="confidence")
     angles = SurfaceValues(left, "magma", (0, 20), "error left (degrees)")
     look = {"views": [ANTERIOR, POSTERIOR], "size": (430, 370)}
@@ -121,20 +121,9 @@ def values() -> Image.Image:
     )
 
 
-def with_noise(mesh: _core.SurfaceMesh, field: _core.OrientationField, std: float) -> _core.OrientationField:
-    """Turn each direction in its triangle's plane by a normal random angle, radians."""
-    angles = np.random.default_rng(1).normal(0.0, std, mesh.triangle_count)[:, None]
-    across = np.cross(mesh.triangle_normals, field.directions)
-    turned = np.cos(angles) * field.directions + np.sin(angles) * across
-    vectors = np.zeros((mesh.input_triangle_count, 3))
-    vectors[mesh.input_triangle] = turned
-    return _core.OrientationField.from_triangle_vectors(mesh, vectors)
-
-
-def angles_between(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Degrees between the two lines of each triangle, (T,), from unit vectors (T, 3)."""
-    cosines = np.abs(np.einsum("ij,ij->i", first, second))
-    return np.degrees(np.arccos(np.clip(cosines, 0.0, 1.0)))
+def noisy(demo: DemoFields, field: _core.OrientationField, degrees: float) -> _core.OrientationField:
+    """The field with normal noise of a standard deviation in degrees."""
+    return _core.add_angular_noise(demo.mesh, field, standard_deviation=np.radians(degrees))
 
 
 def named(name: str) -> View:

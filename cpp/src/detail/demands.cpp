@@ -115,10 +115,11 @@ SettledDemands settle(std::vector<Demand> demands, double conflict_angle) {
 
 SettledDemands tract_demands(const SurfaceMesh& mesh, const TractCurve& curve, const Tract& tract, std::int32_t index,
                              double conflict_angle) {
-  std::vector<Demand> demands;
   auto all = passages(mesh, curve);
   // Where a tract crosses itself the longest passage prevails, whichever end it was drawn from.
   std::stable_sort(all.begin(), all.end(), [](const Passage& a, const Passage& b) { return a.length > b.length; });
+  std::vector<Demand> demands;
+  demands.reserve(all.size());
   for (const auto& passage : all) {
     demands.push_back({passage.triangle, phase_of(mesh, passage), passage.length, index});
   }
