@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 #include <string>
 
 #include "detail/connection.hpp"
@@ -48,21 +47,40 @@ void check(const SurfaceMesh& mesh, const OrientationField& field, const Smoothi
   }
 }
 
+/// The mesh's connection without the edges between triangles of different label.
+detail::Connection connection_within(const SurfaceMesh& mesh, std::span<const std::int32_t> barriers) {
+  detail::Connection connection = detail::make_connection(mesh);
+  if (barriers.empty()) return connection;
+  std::vector<std::int32_t> label(connection.node_count);
+  for (std::size_t t = 0; t < barriers.size(); ++t) {
+    label[t] = barriers[t];
+    if (connection.back[t] >= 0) label[connection.back[t]] = barriers[t];
+  }
+  std::erase_if(connection.edges, [&](const auto& edge) { return label[edge.first] != label[edge.second]; });
+  return connection;
+}
+
+std::vector<detail::FrontalCholesky::Edge> ends(const std::vector<detail::ConnectionEdge>& edges) {
+  std::vector<detail::FrontalCholesky::Edge> all;
+  all.reserve(edges.size());
+  for (const auto& edge : edges) all.push_back({edge.first, edge.second});
+  return all;
+}
+
 /// Weighted least squares on phases: the sum of weight |z - measured|^2, plus a factor times the Dirichlet energy.
 class PhaseFit {
  public:
   PhaseFit(const SurfaceMesh& mesh, const OrientationField& field, std::span<const std::int32_t> barriers)
-      : mesh_(mesh), connection_(detail::make_connection(mesh)), measured_(Phases::Zero(connection_.node_count)) {
+      : mesh_(mesh),
+        connection_(connection_within(mesh, barriers)),
+        measured_(Phases::Zero(connection_.node_count)),
+        matrix_{{}, std::vector<Phase>(connection_.edges.size())},
+        cholesky_(connection_.node_count, ends(connection_.edges)) {
     for (std::int32_t t = 0; t < triangle_count(); ++t) {
       if (!field.has_direction(t)) continue;
       measured_[t] = detail::phase_of(vector(field.directions()[t]), detail::triangle_frame(mesh, t));
       if (connection_.back[t] >= 0) measured_[connection_.back[t]] = std::conj(measured_[t]);
     }
-    if (!barriers.empty()) cut(barriers);
-    std::vector<detail::FrontalCholesky::Edge> edges;
-    for (const auto& edge : connection_.edges) edges.push_back({edge.first, edge.second});
-    matrix_.edges.resize(edges.size());
-    cholesky_.emplace(connection_.node_count, edges);
   }
 
   std::int32_t triangle_count() const { return static_cast<std::int32_t>(mesh_.triangle_count()); }
@@ -88,25 +106,16 @@ class PhaseFit {
       matrix_.diagonal[first] += factor * weight;
       matrix_.diagonal[second] += factor * weight;
     }
-    cholesky_->eliminate(matrix_, pull);
-    return cholesky_->solution();
+    cholesky_.eliminate(matrix_, pull);
+    return cholesky_.solution();
   }
 
  private:
-  void cut(std::span<const std::int32_t> barriers) {
-    std::vector<std::int32_t> label(connection_.node_count);
-    for (std::int32_t t = 0; t < triangle_count(); ++t) {
-      label[t] = barriers[t];
-      if (connection_.back[t] >= 0) label[connection_.back[t]] = barriers[t];
-    }
-    std::erase_if(connection_.edges, [&](const auto& edge) { return label[edge.first] != label[edge.second]; });
-  }
-
   const SurfaceMesh& mesh_;
   detail::Connection connection_;
   Phases measured_;  ///< per node; 0 where nothing was measured
   detail::HermitianMatrix matrix_;
-  std::optional<detail::FrontalCholesky> cholesky_;
+  detail::FrontalCholesky cholesky_;
 };
 
 /// What most fibres around each triangle say.

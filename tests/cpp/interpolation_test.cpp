@@ -226,6 +226,21 @@ TEST_CASE("parallel conditions on every loop leave singularities of the Euler ch
   CHECK(half_turns_of(disk, field) == 2 - topology.loop_half_turns.at(0).value());
 }
 
+TEST_CASE("fibres parallel to all borders leave exactly the Euler characteristic inside") {
+  // Chi is -3: a sphere with five holes.
+  for (const Soup& soup : {demo(), demo(2), cylinder(30, 12, 2, 6), annulus(30, 8, 1, 3)}) {
+    const SurfaceMesh mesh = soup.mesh();
+    std::vector<BoundaryCondition> conditions;
+    for (std::size_t loop = 0; loop < mesh.boundary_loops().size(); ++loop) {
+      conditions.push_back({static_cast<std::int32_t>(loop), BoundaryRule::parallel});
+    }
+    const auto field = interpolate(mesh, make_constraints(mesh, {}, conditions).triangles).field;
+    const auto topology = field_topology(mesh, field);
+    for (const auto& turns : topology.loop_half_turns) CHECK(turns == 0);
+    CHECK(half_turns_of(mesh, field) == 2 * mesh.components()[0].euler_characteristic);
+  }
+}
+
 TEST_CASE("without constraints the field is the smoothest one") {
   const SurfaceMesh plane = jittered_grid(12, 12).mesh();
   CHECK(dirichlet_energy(plane, interpolate(plane, Rows{}).field) <= 1e-12);

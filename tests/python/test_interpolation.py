@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +13,8 @@ import pectinate
 from meshes import Mesh, grid, moebius_strip, octahedron, sphere, torus, two_components
 from pectinate import BoundaryCondition, FieldEditor, Model, Tract, TractSet, _core, interpolate, parameterize
 from pectinate.errors import Error, InvalidField, InvalidMesh, InvalidOption
+
+DEMO_TRACTS = Path(__file__).resolve().parents[2] / "benchmarks" / "demo_tracts.json"
 
 METHODS = ("connection", "reference_frame")
 
@@ -80,6 +83,20 @@ def test_parallel_borders_make_a_circular_field(method):
     assert result.report()["loop_turns"] == [0, 0]
     assert result.angles is not None
     assert (np.abs(result.angles) > math.radians(86)).all()  # e_t everywhere
+
+
+def test_both_methods_agree_where_they_are_sure():
+    atrium = pectinate.datasets.demo_atrium(edge_length=2)
+    drawing = pectinate.read_tracts(DEMO_TRACTS)
+    connection = interpolate(atrium, drawing, maximum_distance=3)
+    frame = interpolate(atrium, drawing, method="reference_frame", maximum_distance=3)
+    angles = np.degrees(_core.angles_between(connection.field, frame.field))
+    sure = (connection.confidence > 0.5) & (frame.confidence > 0.5)
+    assert np.count_nonzero(sure) > 0.4 * len(sure)
+    assert np.median(angles[sure]) < 3
+    assert np.percentile(angles[sure], 95) < 20
+    # Each is least by its own measure; the energy is that of the connection.
+    assert connection.energy < frame.energy
 
 
 def test_angles_and_field_are_equations_1_and_2():
