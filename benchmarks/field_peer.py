@@ -6,8 +6,8 @@ import time
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
-from scipy.sparse.linalg import splu
+from scipy import sparse  # type: ignore[import-untyped]
+from scipy.sparse.linalg import splu  # type: ignore[import-untyped]
 
 from pectinate import _core
 
@@ -42,7 +42,7 @@ def _frames(mesh: _core.SurfaceMesh) -> tuple[NDArray[np.float64], NDArray[np.fl
     return along, np.cross(mesh.triangle_normals, along)
 
 
-def _phases(mesh: _core.SurfaceMesh, triangles: NDArray[np.int32], vectors: NDArray[np.float64]) -> _Complex:
+def _phases(mesh: _core.SurfaceMesh, triangles: NDArray[np.integer], vectors: NDArray[np.float64]) -> _Complex:
     """Of a vector in each of the triangles: exp(2 i angle) from its first side."""
     along, across = (axis[triangles] for axis in _frames(mesh))
     line = (vectors * along).sum(axis=1) + 1j * (vectors * across).sum(axis=1)
