@@ -65,14 +65,21 @@ def read_surface(source: SurfaceSource) -> Arrays:
     if source.edge_length is not None:
         model = pectinate.datasets.demo_atrium(edge_length=source.edge_length)
     else:
-        model = pectinate.load(_find(str(source.file)))
+        model = pectinate.load(find_file(str(source.file)))
     data = model.data
     if data.vectors is None or data.vector_location != "triangle":
         raise SurfaceMissing(f"{data.source} has no vector per triangle, which the engines are compared on")
     return Arrays(data.vertices, data.triangles, data.vectors)
 
 
-def _find(name: str) -> Path:
+def find_file(name: str) -> Path:
+    """Path of a file of the measured data.
+
+    Raises
+    ------
+    SurfaceMissing
+        There is no such file.
+    """
     folder = Path(os.environ.get("PECTINATE_DATA", REPOSITORY.parent / "shared" / "data"))
     if not (folder / name).is_file():
         raise SurfaceMissing(f"{folder / name} not found: set PECTINATE_DATA to the folder that holds {name}")

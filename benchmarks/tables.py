@@ -78,7 +78,7 @@ def ratio_table(cases: Sequence[tuple[str, Sequence[Row]]]) -> str:
         for ours in _ours(rows)
     ]
     titles = ["surface and options", "method", *(title for title, _ in RATIOS)]
-    return _align(titles, lines, left=2) if lines else ""
+    return align(titles, lines, left=2) if lines else ""
 
 
 def failures(rows: Sequence[Row]) -> list[str]:
@@ -92,7 +92,7 @@ def _ours(rows: Sequence[Row]) -> list[Row]:
 
 def _table(first: list[str], columns: Sequence[Column], rows: Sequence[tuple[list[str], Row]]) -> str:
     lines = [[*names, *_cells(columns, row)] for names, row in rows]
-    return _align([*first, *(title for title, _ in columns)], lines, left=len(first))
+    return align([*first, *(title for title, _ in columns)], lines, left=len(first))
 
 
 def _cells(columns: Sequence[Column], row: Row) -> list[str]:
@@ -101,7 +101,7 @@ def _cells(columns: Sequence[Column], row: Row) -> list[str]:
     return [show(row) for _, show in columns]
 
 
-def _align(titles: list[str], lines: Sequence[list[str]], left: int) -> str:
+def align(titles: list[str], lines: Sequence[list[str]], left: int) -> str:
     """Pad cells to columns, the first `left` of them aligned to the left."""
     widths = [max(map(len, column)) for column in zip(titles, *lines, strict=True)]
     rule = [
