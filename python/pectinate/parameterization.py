@@ -14,7 +14,7 @@ from pectinate import _core
 from pectinate.errors import InvalidOption
 from pectinate.figure.disk import draw_disk
 from pectinate.io import load
-from pectinate.loops import LoopChoice, find_loop
+from pectinate.loops import LoopChoice, find_loop, three_numbers
 from pectinate.model import Model
 
 _AMBIGUOUS = 0.8
@@ -130,7 +130,7 @@ def parameterize(
     outer = None if outer_loop is None else find_loop(model, outer_loop)
     inner = None if inner_loop is None else find_loop(model, inner_loop)
     disk = _core.parameterize(model.mesh, outer_loop=outer)
-    point = None if inner_point is None else np.asarray(inner_point, float)
+    point = None if inner_point is None else three_numbers(inner_point, "inner_point")
     frame = _core.make_reference_frame(model.mesh, disk, inner_loop=inner, inner_point=point)
     return DiskMap(model, disk, frame, inner, _notes(disk, frame, chosen=outer is not None))
 
