@@ -204,7 +204,11 @@ def _loop_pairs(source: Model, target: Model, given: Any) -> list[tuple[int, int
         raise InvalidOption(
             "no boundary loops of the two surfaces have the same name; say which correspond: loop_pairs"
         )
-    return [(find_loop(source, first), find_loop(target, second)) for first, second in given]
+    try:
+        pairs = [(first, second) for first, second in given]
+    except (TypeError, ValueError):
+        raise InvalidOption(f"loop_pairs is {given!r}; give pairs of loops, of the first and second surface") from None
+    return [(find_loop(source, first), find_loop(target, second)) for first, second in pairs]
 
 
 def _check_same(source: Model, target: Model) -> None:

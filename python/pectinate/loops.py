@@ -59,6 +59,23 @@ def distance_to_loop(model: Model, loop: int, point: Sequence[float] | NDArray[n
     return float(np.linalg.norm(vertices - np.asarray(point, float), axis=1).min())
 
 
+def three_numbers(values: object, what: str) -> NDArray[np.float64]:
+    """Take a point, (3,), mm; `what` names it in the message.
+
+    Raises
+    ------
+    InvalidOption
+        It is no three finite numbers.
+    """
+    try:
+        point = np.array(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        point = np.empty(0)
+    if point.shape != (_COORDINATES,) or not np.isfinite(point).all():
+        raise InvalidOption(f"{what} is {values!r}; give three finite numbers, mm")
+    return point
+
+
 def _known(names: dict[str, int], count: int) -> str:
     named = f"the named loops are {', '.join(map(repr, names))}" if names else "no loop has a name"
     return f"{named}; indices go from 0 to {count - 1}, and a point means the loop nearest to it"
@@ -66,9 +83,7 @@ def _known(names: dict[str, int], count: int) -> str:
 
 def _point(which: object) -> NDArray[np.float64]:
     try:
-        point = np.asarray(which, dtype=np.float64)
-    except (TypeError, ValueError):
-        point = np.empty(0)
-    if isinstance(which, bool) or point.shape != (_COORDINATES,) or not np.isfinite(point).all():
-        raise InvalidOption(f"{which!r} is no boundary loop; give an index, a name or a point of three numbers, mm")
-    return point
+        return three_numbers(which, "the loop")
+    except InvalidOption:
+        remedy = "give an index, a name or a point of three numbers, mm"
+        raise InvalidOption(f"{which!r} is no boundary loop; {remedy}") from None

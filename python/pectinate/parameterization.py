@@ -14,7 +14,7 @@ from pectinate import _core
 from pectinate.errors import InvalidOption
 from pectinate.figure.disk import draw_disk
 from pectinate.io import load
-from pectinate.loops import LoopChoice, find_loop
+from pectinate.loops import LoopChoice, find_loop, three_numbers
 from pectinate.model import Model
 
 _AMBIGUOUS = 0.8
@@ -129,8 +129,8 @@ def parameterize(
         raise InvalidOption("inner_loop and inner_point are both given; u can be 0 at one of them only")
     outer = None if outer_loop is None else find_loop(model, outer_loop)
     inner = None if inner_loop is None else find_loop(model, inner_loop)
+    point = None if inner_point is None else three_numbers(inner_point, "inner_point")
     disk = _core.parameterize(model.mesh, outer_loop=outer)
-    point = None if inner_point is None else np.asarray(inner_point, float)
     frame = _core.make_reference_frame(model.mesh, disk, inner_loop=inner, inner_point=point)
     return DiskMap(model, disk, frame, inner, _notes(disk, frame, chosen=outer is not None))
 

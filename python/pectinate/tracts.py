@@ -7,6 +7,7 @@ import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from numbers import Real
 from typing import Literal, cast
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pectinate import _core
 from pectinate.errors import InvalidOption
-from pectinate.loops import LoopChoice, find_loop
+from pectinate.loops import LoopChoice, find_loop, three_numbers
 from pectinate.model import Model
 
 Rule = Literal["free", "parallel", "perpendicular"]
@@ -215,17 +216,13 @@ def _points(values: ArrayLike, name: str) -> NDArray[np.float64]:
 
 
 def _point(values: ArrayLike, name: str) -> NDArray[np.float64]:
-    point = np.array(values, dtype=np.float64)
-    if point.shape != (3,) or not np.isfinite(point).all():
-        raise InvalidOption(
-            f"the point of loop {name!r} is {np.asarray(values).tolist()}; give three finite numbers, mm"
-        )
+    point = three_numbers(values, f"the point of loop {name!r}")
     point.setflags(write=False)
     return point
 
 
 def _check_weight(weight: float, what: str) -> None:
-    if not weight > 0:
+    if isinstance(weight, bool) or not isinstance(weight, Real) or not weight > 0:
         raise InvalidOption(f"the weight of {what} is {weight}; it must be positive, or infinite for exactly")
 
 

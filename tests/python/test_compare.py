@@ -95,6 +95,9 @@ def test_through_the_disks():
         assert np.nanpercentile(np.abs(angles - 30), 90) < 3
     with pytest.raises(InvalidOption, match="same name"):
         compare(small, with_angle(with_hole(24, 3.0), 50), how="disks")
+    for pairs in (3, [0], [(0, 0, 0)]):
+        with pytest.raises(InvalidOption, match="pairs of loops"):
+            compare(small, large, how="disks", loop_pairs=pairs)  # type: ignore[arg-type]
     with pytest.raises(InvalidOption, match="'window'"):
         compare(small, large, how="disks", loop_pairs=[("window", "hole")])
     with pytest.raises(InvalidOption, match="'door'"):

@@ -421,3 +421,9 @@ def test_directions_per_vertex(tmp_path):
     np.testing.assert_allclose(lines_agree(others, np.array([0.6, 0.8, 0])), 1, atol=1e-12)
     pectinate.save_surface(model, tmp_path / "f.vtu", per_vertex=True)
     assert pyvista.read(tmp_path / "f.vtu").point_data["fiber"].tolist() == directions.tolist()
+
+
+def test_an_inner_point_that_is_none():
+    for point in ("abc", [1, 2], [[5, 5, 0]], [0, math.nan, 0]):
+        with pytest.raises(InvalidOption, match="inner_point"):
+            parameterize(grid(4), inner_point=point)

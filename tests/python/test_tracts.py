@@ -177,13 +177,14 @@ def test_bad_tracts_and_conditions():
     for bad in ([[0, 0, 0]], [[0, 0], [1, 1]], [[0, 0, 0], [1, math.nan, 0]], "ab", [[1, 2, 3], [4]]):
         with pytest.raises(InvalidOption, match="'roof'"):
             Tract(bad, name="roof")  # type: ignore[arg-type]
-    for weight in (0, -1, math.nan):
+    for weight in (0, -1, math.nan, "1", None, True):
         with pytest.raises(InvalidOption, match="weight"):
-            Tract(np.eye(3), weight=weight)
+            Tract(np.eye(3), weight=weight)  # type: ignore[arg-type]
     with pytest.raises(InvalidOption, match="free, parallel, perpendicular"):
         BoundaryCondition(0, "along")  # type: ignore[arg-type]
-    with pytest.raises(InvalidOption, match="'valve'"):
-        TractSet(loops={"valve": np.array([1.0, 2])})
+    for point in (np.array([1.0, 2]), "xyz", [[1], [2, 3]], [0, math.inf, 0]):
+        with pytest.raises(InvalidOption, match="'valve'"):
+            TractSet(loops={"valve": point})  # type: ignore[dict-item]
 
 
 def test_tracts_do_not_change_with_the_array_that_they_came_from():

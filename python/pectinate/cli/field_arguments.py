@@ -71,7 +71,7 @@ def _add_smooth(subparsers: argparse._SubParsersAction[Parser]) -> None:
     group.add_argument("--length", type=float, metavar="MM", help="over which fibres are brought to agree")
     group.add_argument("--barriers", metavar="KIND", help="tags: nothing is exchanged between regions; none (default)")
     group.add_argument(
-        "--outlier-angle", type=degrees, metavar="DEGREES", help="fibres farther from their neighbourhood lose weight"
+        "--outlier-angle", type=degrees, metavar="DEGREES", help="fibres farther from those around them are replaced"
     )
     group.add_argument("--fill-missing", action="store_true", help="give a direction to triangles that have none too")
     _add_outputs(parser)
