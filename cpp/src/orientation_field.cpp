@@ -56,7 +56,10 @@ Direction from_vector(const Vec3& input, const Plane& plane) {
   const Vector in_plane = unit - height * plane.normal;
   const double share = in_plane.norm();
   if (share <= least_share) return {DirectionStatus::normal};
-  return {DirectionStatus::valid, with_canonical_sign(in_plane / share, plane), std::atan2(std::abs(height), share)};
+  // Most made fields lie in the plane: there the angle is its tangent, to the last bit.
+  const double tangent = std::abs(height) / share;
+  return {DirectionStatus::valid, with_canonical_sign(in_plane / share, plane),
+          tangent < 1e-9 ? tangent : std::atan(tangent)};
 }
 
 /// A symmetric tensor in a triangle's plane, spanned by its first side and the direction to the left of it: t_uu - t_vv

@@ -21,7 +21,20 @@ constexpr std::int32_t small_subtree = 200;
 
 bool worth_joining(double columns, double height, double needed) {
   const double stored = columns * (columns + 1) / 2 + columns * height;
-  return columns <= small_front || stored - needed <= tolerated_zeros * stored;
+  return stored - needed <= tolerated_zeros * stored;
+}
+
+/// For each column the root of the greatest subtree of few columns that it lies in, -1 where it lies in none.
+std::vector<std::int32_t> small_subtrees(const std::vector<std::int32_t>& parents) {
+  const auto count = static_cast<std::int32_t>(parents.size());
+  std::vector<std::int32_t> size(count, 1), root(count, -1);
+  for (std::int32_t j = 0; j < count; ++j) {
+    if (parents[j] >= 0) size[parents[j]] += size[j];
+  }
+  for (std::int32_t j = count - 1; j >= 0; --j) {
+    if (size[j] <= small_front) root[j] = parents[j] >= 0 && root[parents[j]] >= 0 ? root[parents[j]] : j;
+  }
+  return root;
 }
 
 }  // namespace
@@ -65,6 +78,7 @@ std::vector<std::int32_t> FrontalCholesky::rows_below(std::int32_t column, const
 void FrontalCholesky::make_fronts(const std::vector<std::int32_t>& parents) {
   const auto count = static_cast<std::int32_t>(parents.size());
   Columns below(count), children(count);
+  const auto subtree = small_subtrees(parents);
   front_of_.resize(count);
   std::ranges::fill(local_, -1);
   double needed = 0;  // entries of the last front's columns, without the zeros that it stores
@@ -73,7 +87,9 @@ void FrontalCholesky::make_fronts(const std::vector<std::int32_t>& parents) {
     for (const auto child : children[j]) below[child] = {};
     if (parents[j] >= 0) children[parents[j]].push_back(j);
     const auto height = static_cast<double>(below[j].size());
-    if (j == 0 || parents[j - 1] != j || !worth_joining(fronts_.back().count + 1, height, needed + height + 1)) {
+    const bool same_subtree = j > 0 && subtree[j] >= 0 && subtree[j] == subtree[j - 1];
+    const bool chained = j > 0 && parents[j - 1] == j;
+    if (!same_subtree && !(chained && worth_joining(fronts_.back().count + 1, height, needed + height + 1))) {
       fronts_.emplace_back().first = j;
       needed = 0;
     }
