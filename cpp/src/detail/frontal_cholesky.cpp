@@ -37,6 +37,16 @@ std::vector<std::int32_t> small_subtrees(const std::vector<std::int32_t>& parent
   return root;
 }
 
+/// The sum of conj(a) b. Most fronts are too small for a library's kernels.
+std::complex<double> conjugate_dot(const std::complex<double>* a, const std::complex<double>* b, Eigen::Index count) {
+  std::array<double, 2> real{}, imaginary{};  // of even and odd places: sums that need not wait for each other
+  for (Eigen::Index i = 0; i < count; ++i) {
+    real[i % 2] += a[i].real() * b[i].real() + a[i].imag() * b[i].imag();
+    imaginary[i % 2] += a[i].real() * b[i].imag() - a[i].imag() * b[i].real();
+  }
+  return {real[0] + real[1], imaginary[0] + imaginary[1]};
+}
+
 }  // namespace
 
 FrontalCholesky::FrontalCholesky(std::int32_t node_count, std::span<const Edge> edges)
@@ -123,6 +133,13 @@ void FrontalCholesky::link_fronts() {
       front.in_parent.push_back(parent.count + static_cast<std::int32_t>(place - parent.rows.begin()));
     }
   }
+  Eigen::Index entries = 0;
+  for (auto& front : fronts_) {
+    front.columns_at = static_cast<std::size_t>(entries);
+    entries += front.count * (front.count + static_cast<Eigen::Index>(front.rows.size()));
+  }
+  factor_.resize(entries);
+  reduced_.resize(static_cast<Eigen::Index>(place_.size()));
   for (auto& front : fronts_) front.keeps_contribution = front.parent >= 0 && subtree[front.parent] >= small_subtree;
 }
 
@@ -175,7 +192,7 @@ void FrontalCholesky::factorize(Front& front, const HermitianMatrix& matrix) {
     top.adjoint().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(left);
     dense.bottomRightCorner(below, below).selfadjointView<Eigen::Lower>().rankUpdate(left, -1);
   }
-  front.columns = dense.leftCols(count);
+  Eigen::Map<Block>(factor_.data() + front.columns_at, count + below, count) = dense.leftCols(count);
   front.contribution = dense.bottomRightCorner(below, below);
   for (const auto child : front.children) {
     if (!fronts_[child].keeps_contribution) fronts_[child].contribution.resize(0, 0);
@@ -184,18 +201,18 @@ void FrontalCholesky::factorize(Front& front, const HermitianMatrix& matrix) {
 
 void FrontalCholesky::substitute(Front& front, const Eigen::VectorXcd& right_hand_side) {
   const auto below = static_cast<Eigen::Index>(front.rows.size());
-  front.reduced.resize(front.count);
+  auto reduced = reduced_.segment(front.first, front.count);
   front.passed_on.setZero(below);
-  for (std::int32_t k = 0; k < front.count; ++k) front.reduced[k] = right_hand_side[node_[front.first + k]];
+  for (std::int32_t k = 0; k < front.count; ++k) reduced[k] = right_hand_side[node_[front.first + k]];
   for (const auto c : front.children) {
     const Front& child = fronts_[c];
     for (std::size_t k = 0; k < child.in_parent.size(); ++k) {
       const auto place = child.in_parent[k];
-      (place < front.count ? front.reduced[place] : front.passed_on[place - front.count]) += child.passed_on[k];
+      (place < front.count ? reduced[place] : front.passed_on[place - front.count]) += child.passed_on[k];
     }
   }
-  front.columns.topRows(front.count).triangularView<Eigen::Lower>().solveInPlace(front.reduced);
-  front.passed_on.noalias() -= front.columns.bottomRows(below) * front.reduced;
+  columns(front).topRows(front.count).triangularView<Eigen::Lower>().solveInPlace(reduced);
+  front.passed_on.noalias() -= columns(front).bottomRows(below) * reduced;
 }
 
 void FrontalCholesky::assemble(const Front& front, const HermitianMatrix& matrix, Eigen::Ref<Block> dense) {
@@ -221,14 +238,17 @@ void FrontalCholesky::assemble(const Front& front, const HermitianMatrix& matrix
 }
 
 Eigen::VectorXcd FrontalCholesky::solution() const {
-  Eigen::VectorXcd x(place_.size()), above;
+  Eigen::VectorXcd x(place_.size()), tail;
   for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
-    auto own = x.segment(front->first, front->count);
-    above.resize(front->rows.size());
-    for (std::size_t k = 0; k < front->rows.size(); ++k) above[k] = x[front->rows[k]];
-    own = front->reduced;
-    own.noalias() -= front->columns.bottomRows(above.size()).adjoint() * above;
-    front->columns.topRows(front->count).adjoint().triangularView<Eigen::Upper>().solveInPlace(own);
+    const Eigen::Index count = front->count, height = count + static_cast<Eigen::Index>(front->rows.size());
+    if (tail.size() < height) tail.resize(height);
+    for (Eigen::Index k = count; k < height; ++k) tail[k] = x[front->rows[k - count]];
+    for (Eigen::Index k = count - 1; k >= 0; --k) {
+      const auto* column = factor_.data() + front->columns_at + k * height;
+      const auto known = conjugate_dot(column + k + 1, tail.data() + k + 1, height - k - 1);
+      tail[k] = (reduced_[front->first + k] - known) / column[k].real();
+    }
+    x.segment(front->first, count) = tail.head(count);
   }
   Eigen::VectorXcd of_nodes(x.size());
   for (Eigen::Index i = 0; i < x.size(); ++i) of_nodes[node_[i]] = x[i];

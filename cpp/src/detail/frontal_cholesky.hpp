@@ -54,9 +54,9 @@ class FrontalCholesky {
     std::vector<std::int32_t> in_parent;  ///< of each of the rows, its place in the parent's front
     std::vector<std::int32_t> children;
     bool keeps_contribution = true;
-    Block columns;                        ///< of the factor: (count + rows) x count
-    Block contribution;                   ///< to the parent: rows x rows, lower triangle
-    Eigen::VectorXcd reduced, passed_on;  ///< right hand side of the columns, and what the rows get of it
+    std::size_t columns_at = 0;  ///< in the factor: (count + rows) x count
+    Block contribution;          ///< to the parent: rows x rows, lower triangle
+    Eigen::VectorXcd passed_on;  ///< of the right hand side, to the rows
   };
 
   void collect_entries(std::span<const Edge> edges);
@@ -67,6 +67,9 @@ class FrontalCholesky {
   void link_fronts();
   /// From the given nodes up to the roots, with what was not kept below.
   std::vector<bool> fronts_above(std::span<const std::int32_t> nodes) const;
+  Eigen::Map<const Block> columns(const Front& front) const {
+    return {factor_.data() + front.columns_at, front.count + static_cast<Eigen::Index>(front.rows.size()), front.count};
+  }
   void factorize(Front& front, const HermitianMatrix& matrix);
   void assemble(const Front& front, const HermitianMatrix& matrix, Eigen::Ref<Block> dense);
   void substitute(Front& front, const Eigen::VectorXcd& right_hand_side);
@@ -77,6 +80,9 @@ class FrontalCholesky {
   std::vector<Entry> entries_;
   std::vector<Front> fronts_;           ///< children first
   std::vector<std::int32_t> front_of_;  ///< per place
+  /// One after the other, because reading it is what takes time: the columns of all fronts, and the right hand side
+  /// after substitution, per place.
+  Eigen::VectorXcd factor_, reduced_;
   // Scratch space.
   std::vector<std::int32_t> local_;
   Block dense_;
