@@ -8,8 +8,8 @@
 #include <numbers>
 #include <string>
 
-#include "detail/field_check.hpp"
 #include "detail/field_of_directions.hpp"
+#include "detail/fit_checks.hpp"
 #include "detail/random.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/errors.hpp"

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "detail/connection.hpp"
+#include "detail/mesh_geometry.hpp"
 
 namespace pectinate {
 namespace {
@@ -61,7 +62,7 @@ class Turns {
     return mesh_.runs_along(t, side) == mesh_.runs_along(across.triangle, across.side);
   }
 
-  Vector corner(std::int32_t t, int k) const { return vector(mesh_.vertices()[mesh_.triangles()[t][k % 3]]); }
+  Vector corner(std::int32_t t, int k) const { return detail::corner(mesh_, t, k); }
 
   double corner_angle(const Place& at) const {
     const Vector u = corner(at.triangle, at.corner + 1) - corner(at.triangle, at.corner);

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "detail/disk_locator.hpp"
-#include "detail/field_check.hpp"
 #include "detail/field_of_directions.hpp"
+#include "detail/fit_checks.hpp"
 #include "detail/mesh_geometry.hpp"
 #include "pectinate/comparison.hpp"
 #include "pectinate/constraints.hpp"
@@ -66,11 +66,7 @@ Vector turned(const Vector& direction, const Vector& from, Vector to) {
 }
 
 void check_disk(const SurfaceMesh& mesh, const Parameterization& disk, const std::string& name) {
-  const auto loop_count = static_cast<std::int32_t>(mesh.boundary_loops().size());
-  const bool fits = disk.points.size() == mesh.vertices().size() &&
-                    static_cast<std::int32_t>(disk.loop_centres.size()) == loop_count && disk.outer_loop >= 0 &&
-                    disk.outer_loop < loop_count;
-  if (!fits) {
+  if (!detail::is_of(disk, mesh)) {
     throw InvalidOption("the " + name + "'s parameterization is not of its mesh: it has other vertices or loops");
   }
   for (std::size_t v = 0; v < disk.points.size(); ++v) {

@@ -98,7 +98,8 @@ class FieldInterpolator::State {
 
  private:
   std::int32_t triangle_count() const { return static_cast<std::int32_t>(mesh_.triangle_count()); }
-  bool is_free(std::int32_t node) const { return !is_constrained_[mesh_.triangle_components()[triangle_of_[node]]]; }
+  std::int32_t component(std::int32_t node) const { return mesh_.triangle_components()[triangle_of_[node]]; }
+  bool is_free(std::int32_t node) const { return !is_constrained_[component(node)]; }
   double mass(std::int32_t node) const {
     return mesh_.triangle_areas()[triangle_of_[node]] * triangle_count() / mesh_.area();
   }
@@ -184,7 +185,6 @@ class FieldInterpolator::State {
   /// when no component's Rayleigh quotient changes any more.
   bool next_load(const Eigen::VectorXcd& phase, Eigen::VectorXcd& load, std::vector<double>& quotients) const {
     std::vector<double> squares(quotients.size(), 0), products(quotients.size(), 0);
-    const auto component = [&](std::int32_t node) { return mesh_.triangle_components()[triangle_of_[node]]; };
     for (std::int32_t node = 0; node < connection_.node_count; ++node) {
       squares[component(node)] += mass(node) * std::norm(phase[node]);
       products[component(node)] += (std::conj(phase[node]) * load[node]).real();
@@ -204,7 +204,6 @@ class FieldInterpolator::State {
 
   void scale_free(Eigen::VectorXcd& phase) const {
     std::vector<double> greatest(mesh_.components().size(), 0);
-    const auto component = [&](std::int32_t node) { return mesh_.triangle_components()[triangle_of_[node]]; };
     for (std::int32_t node = 0; node < connection_.node_count; ++node) {
       greatest[component(node)] = std::max(greatest[component(node)], std::abs(phase[node]));
     }

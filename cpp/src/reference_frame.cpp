@@ -10,6 +10,8 @@
 
 #include "detail/critical_points.hpp"
 #include "detail/dirichlet_solver.hpp"
+#include "detail/field_of_directions.hpp"
+#include "detail/fit_checks.hpp"
 #include "detail/hole_filling.hpp"
 #include "detail/mean_value.hpp"
 #include "detail/vec.hpp"
@@ -33,11 +35,8 @@ struct DiskFunction {
 };
 
 void check_fits(const SurfaceMesh& mesh, const Parameterization& parameterization) {
-  const auto loop_count = mesh.boundary_loops().size();
-  const bool fits = parameterization.points.size() == mesh.vertices().size() &&
-                    parameterization.loop_centres.size() == loop_count && parameterization.outer_loop >= 0 &&
-                    parameterization.outer_loop < static_cast<std::int32_t>(loop_count);
-  if (!fits) throw InvalidOption("the parameterization is not of this mesh: it has other vertices or boundary loops");
+  if (detail::is_of(parameterization, mesh)) return;
+  throw InvalidOption("the parameterization is not of this mesh: it has other vertices or boundary loops");
 }
 
 void check_inner_loop(const SurfaceMesh& mesh, std::int32_t inner, std::int32_t outer) {
@@ -282,13 +281,13 @@ OrientationField field_from_angles(const SurfaceMesh& mesh, const ReferenceFrame
                                    const std::vector<double>& angles) {
   check_triangle_count(frame.longitudinal.size(), mesh.triangle_count(), "the reference frame is");
   check_triangle_count(angles.size(), mesh.triangle_count(), "angles are given");
-  std::vector<Vec3> directions(mesh.input_triangle_count(), Vec3{0, 0, 0});
+  std::vector<Vec3> directions(angles.size(), Vec3{0, 0, 0});
   for (std::size_t t = 0; t < angles.size(); ++t) {
     if (!std::isfinite(angles[t])) continue;
-    directions[mesh.input_triangle()[t]] = detail::vec3(std::cos(angles[t]) * vector(frame.longitudinal[t]) +
-                                                        std::sin(angles[t]) * vector(frame.transverse[t]));
+    directions[t] = detail::vec3(std::cos(angles[t]) * vector(frame.longitudinal[t]) +
+                                 std::sin(angles[t]) * vector(frame.transverse[t]));
   }
-  return OrientationField::from_triangle_vectors(mesh, directions);
+  return detail::field_of_directions(mesh, directions);
 }
 
 }  // namespace pectinate

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "pectinate/smoothing.hpp"
 
-#include <Eigen/Geometry>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <string>
 
 #include "detail/connection.hpp"
 #include "detail/field_of_directions.hpp"
+#include "detail/fit_checks.hpp"
 #include "detail/frontal_cholesky.hpp"
+#include "pectinate/comparison.hpp"
 #include "pectinate/errors.hpp"
 
 namespace pectinate {
@@ -41,10 +41,7 @@ void check(const SurfaceMesh& mesh, const OrientationField& field, const Smoothi
     throw InvalidOption("there are " + std::to_string(barriers.size()) + " barrier labels, but the mesh has " +
                         std::to_string(mesh.triangle_count()) + " triangles; give one for each");
   }
-  if (field.directions().size() != mesh.triangle_count()) {
-    throw InvalidField("the field has " + std::to_string(field.directions().size()) + " triangles, but the mesh has " +
-                       std::to_string(mesh.triangle_count()) + "; give the field of this mesh");
-  }
+  detail::check_is_on(mesh, field);
 }
 
 /// The mesh's connection without the edges between triangles of different label.
@@ -131,10 +128,6 @@ Phases find_consensus(PhaseFit& fit, double factor) {
   return consensus;
 }
 
-double line_angle(const Vec3& a, const Vec3& b) {
-  return std::atan2(vector(a).cross(vector(b)).norm(), std::abs(vector(a).dot(vector(b))));
-}
-
 /// As the angle between the lines; of a phase of 0, any.
 std::vector<std::uint8_t> find_outliers(const PhaseFit& fit, const Phases& consensus, double outlier_angle) {
   std::vector<std::uint8_t> outliers(fit.triangle_count(), 0);
@@ -155,13 +148,13 @@ Smoothing smooth(const SurfaceMesh& mesh, const OrientationField& field, const S
   const Phases smooth = fit.solve(final_share * final_share * factor,
                                   [&](std::int32_t t) { return outliers[t] != 0 ? dropped_weight : 1.0; });
   std::vector<Vec3> directions(mesh.triangle_count(), Vec3{0, 0, 0});
-  std::vector<double> moved(mesh.triangle_count(), std::numeric_limits<double>::quiet_NaN());
   for (std::int32_t t = 0; t < fit.triangle_count(); ++t) {
     if (smooth[t] == 0.0 || (!options.fill_missing && !field.has_direction(t))) continue;
     directions[t] = detail::vec3(detail::direction_of(smooth[t], detail::triangle_frame(mesh, t)));
-    if (field.has_direction(t)) moved[t] = line_angle(directions[t], field.directions()[t]);
   }
-  return {detail::field_of_directions(mesh, directions), std::move(moved), std::move(outliers)};
+  auto smoothed = detail::field_of_directions(mesh, directions);
+  auto moved_angles = angles_between(smoothed, field);
+  return {std::move(smoothed), std::move(moved_angles), std::move(outliers)};
 }
 
 }  // namespace pectinate

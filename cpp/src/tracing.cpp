@@ -8,6 +8,7 @@
 
 #include "detail/crossings.hpp"
 #include "detail/edge_point.hpp"
+#include "detail/fit_checks.hpp"
 #include "detail/self_approach.hpp"
 #include "detail/vec.hpp"
 #include "detail/visited_chords.hpp"
@@ -46,10 +47,7 @@ void check_separations(const SurfaceMesh& mesh, const TracingOptions& options) {
 }
 
 void check(const SurfaceMesh& mesh, const OrientationField& field, const TracingOptions& options) {
-  if (field.directions().size() != mesh.triangle_count()) {
-    throw InvalidField("the field has " + std::to_string(field.directions().size()) + " directions, but the mesh has " +
-                       std::to_string(mesh.triangle_count()) + " triangles; build the field from this mesh");
-  }
+  detail::check_is_on(mesh, field);
   check_separations(mesh, options);
   if (!(options.abrupt_turn_angle > 0 && options.abrupt_turn_angle <= std::numbers::pi)) {
     throw InvalidOption("abrupt_turn_angle is " + std::to_string(options.abrupt_turn_angle) +

@@ -3,16 +3,15 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
+
+#include "detail/mesh_geometry.hpp"
 
 namespace pectinate::detail {
 namespace {
 
 /// Edges whose opposite angles add up to nearly pi or more (not Delaunay) would get an infinite or a negative weight.
 constexpr double least_dual_length = 1e-3;
-
-Vector corner(const SurfaceMesh& mesh, std::int32_t t, int k) {
-  return vector(mesh.vertices()[mesh.triangles()[t][k % 3]]);
-}
 
 /// The cotangent of the angle opposite a side.
 double opposite_cotangent(const SurfaceMesh& mesh, std::int32_t t, int side) {

@@ -4,6 +4,7 @@
 #include <metis.h>
 
 #include <numeric>
+#include <string>
 
 #include "pectinate/errors.hpp"
 

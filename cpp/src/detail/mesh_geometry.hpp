@@ -10,6 +10,11 @@
 
 namespace pectinate::detail {
 
+/// Counted round, so that corner 3 is corner 0.
+inline Vector corner(const SurfaceMesh& mesh, std::int32_t triangle, int k) {
+  return vector(mesh.vertices()[mesh.triangles()[triangle][k % 3]]);
+}
+
 inline std::array<Vector, 3> corners(const SurfaceMesh& mesh, std::int32_t triangle) {
   const auto& [a, b, c] = mesh.triangles()[triangle];
   return {vector(mesh.vertices()[a]), vector(mesh.vertices()[b]), vector(mesh.vertices()[c])};
