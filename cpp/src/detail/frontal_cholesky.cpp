@@ -161,8 +161,11 @@ void FrontalCholesky::link_fronts() {
     front.columns_at = static_cast<std::size_t>(entries);
     entries += front.count * (front.count + static_cast<Eigen::Index>(front.rows.size()));
   }
+  const auto places = static_cast<Eigen::Index>(place_.size());
   factor_.resize(entries);
-  for (auto* vector : {&reduced_, &solved_, &solution_}) vector->resize(static_cast<Eigen::Index>(place_.size()));
+  reduced_.resize(places);
+  solved_.resize(places);
+  solution_.resize(places);
   for (auto& front : fronts_) front.keeps_contribution = front.parent >= 0 && subtree[front.parent] >= small_subtree;
 }
 
@@ -274,17 +277,17 @@ void FrontalCholesky::contribute(Front& front, const Front& child) {
 }
 
 const Eigen::VectorXcd& FrontalCholesky::solution() {
-  Eigen::VectorXcd tail;
+  std::vector<std::complex<double>> tail;
   for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
     const Eigen::Index count = front->count, height = count + static_cast<Eigen::Index>(front->rows.size());
-    if (tail.size() < height) tail.resize(height);
+    tail.resize(height);
     for (Eigen::Index k = count; k < height; ++k) tail[k] = solved_[front->rows[k - count]];
     for (Eigen::Index k = count - 1; k >= 0; --k) {
       const auto* column = factor_.data() + front->columns_at + k * height;
       const auto known = conjugate_dot(column + k + 1, tail.data() + k + 1, height - k - 1);
       tail[k] = (reduced_[front->first + k] - known) / column[k].real();
     }
-    solved_.segment(front->first, count) = tail.head(count);
+    std::copy_n(tail.begin(), count, &solved_[front->first]);
   }
   for (Eigen::Index i = 0; i < solved_.size(); ++i) solution_[node_[i]] = solved_[i];
   return solution_;
