@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "detail/implicit_surface.hpp"
+#include "detail/remeshing.hpp"
+
+namespace pectinate::detail {
+
+/// Nearly equilateral triangles of the edge length on the surface, cut open. The same bytes every time.
+CutTriangles triangulate(const ImplicitSurface& surface, double edge_length);
+
+}  // namespace pectinate::detail
