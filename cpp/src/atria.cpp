@@ -60,7 +60,7 @@ std::int32_t region_of(const Chamber& chamber, const Vector& point) {
 GeneratedSurface make_atrial_surface(AtrialSurface which, AtrialLayer layer, const AtriaOptions& options) {
   check(which, layer, options.edge_length);
   const Chamber chamber = make_chamber(which);
-  auto cut = detail::triangulate(make_surface(chamber, layer), options.edge_length);
+  auto cut = detail::triangulate(make_surface(chamber, layer), options.edge_length, detail::Finish::opened_angles);
 
   GeneratedSurface result;
   const auto& vertices = cut.surface.vertices;

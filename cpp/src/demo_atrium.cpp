@@ -84,7 +84,7 @@ std::int32_t region_of(const detail::LeftAtrium& atrium, const Vector& point) {
 DemoAtrium make_demo_atrium(const DemoAtriumOptions& options) {
   check(options.edge_length);
   const auto atrium = detail::make_left_atrium();
-  const auto cut = detail::triangulate(detail::make_surface(atrium), options.edge_length);
+  const auto cut = detail::triangulate(detail::make_surface(atrium), options.edge_length, detail::Finish::remeshed);
 
   DemoAtrium result;
   result.triangles = cut.surface.triangles;

@@ -250,13 +250,13 @@ class DemoAtrium:
     loops: list[NamedLoop]
 
 class AtrialSurface(Enum):
-    left_atrium = ...
-    right_atrium = ...
-    bachmann_bundle = ...
+    left_atrium = 0
+    right_atrium = 1
+    bachmann_bundle = 2
 
 class AtrialLayer(Enum):
-    epicardium = ...
-    endocardium = ...
+    epicardium = 0
+    endocardium = 1
 
 class GeneratedSurface:
     vertices: _Floats

@@ -13,7 +13,7 @@ Sleeve make_sleeve(std::string name, const Vector& root, const Vector& ostium, d
 }
 
 PlanarCut cut_end(const RoundCone& cone, double overhang) {
-  return {cone.end - overhang * cone.axis(), cone.axis(), overhang + 1.5 * cone.end_radius};
+  return {cone.end - overhang * cone.axis(), cone.axis(), overhang + 1.2 * cone.end_radius};
 }
 
 }  // namespace pectinate::detail
