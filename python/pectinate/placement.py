@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
 from pectinate import _core
+from pectinate.choices import member
 from pectinate.errors import InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
 from pectinate.figure.sheet import draw_sheet
@@ -108,18 +109,10 @@ def place_streamlines(
     model = load(surface)
     field = model.require_field()
     for name in _ENUMERATIONS.keys() & options.keys():
-        options[name] = _member(name, options[name])
+        options[name] = member(_ENUMERATIONS[name], name, options[name])
     if np.ndim(options.get("separation_distance", 0.0)) > 0:
         options["separation_distances"] = _per_mesh_triangle(model, options.pop("separation_distance"))
     return Placement(model, _core.place_streamlines(model.mesh, field, progress=progress, **options))
-
-
-def _member(name: str, value: Any) -> Enum:
-    try:
-        return _ENUMERATIONS[name][value]
-    except KeyError:
-        names = ", ".join(_ENUMERATIONS[name].__members__)
-        raise InvalidOption(f"{name} is {value!r}, but must be one of {names}") from None
 
 
 def _per_mesh_triangle(model: Model, values: ArrayLike) -> NDArray[np.float64]:

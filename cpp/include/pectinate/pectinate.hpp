@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "pectinate/atria.hpp"
 #include "pectinate/comparison.hpp"
 #include "pectinate/constraints.hpp"
 #include "pectinate/demo_atrium.hpp"

@@ -49,10 +49,48 @@ Sample sample(const RoundCone& cone, const Vector& point) {
   return {across * cosine + along * sine - cone.start_radius, cosine / std::max(across, 1e-9) * radial + sine * axis};
 }
 
+Sample sample(const HalfSpace& half_space, const Vector& point) {
+  return {half_space.normal.dot(point - half_space.point), half_space.normal};
+}
+
 Sample smooth_union(const Sample& a, const Sample& b, double width) {
   const auto& [inner, outer] = a.value < b.value ? std::tie(a, b) : std::tie(b, a);
   const double h = std::max(1 - (outer.value - inner.value) / width, 0.0);
   return {inner.value - h * h * h * width / 6, inner.gradient + h * h / 2 * (outer.gradient - inner.gradient)};
+}
+
+Sample smooth_intersection(const Sample& a, const Sample& b, double width) {
+  const auto complement = [](const Sample& at) { return Sample{-at.value, -at.gradient}; };
+  return complement(smooth_union(complement(a), complement(b), width));
+}
+
+Sample unit_slope(const Sample& at) {
+  const double slope = std::max(at.gradient.norm(), 1e-9);
+  return {at.value / slope, at.gradient / slope};
+}
+
+Cut make_cut(const PlanarCut& plane) {
+  const auto function = [plane](const Vector& point) { return Sample{plane.height(point), plane.normal}; };
+  return {function, plane.centre, plane.radius};
+}
+
+Box bounds(const Ellipsoid& ellipsoid) {
+  return {ellipsoid.centre - ellipsoid.radii, ellipsoid.centre + ellipsoid.radii};
+}
+
+Box bounds(const RoundCone& cone) {
+  const auto sphere = [](const Vector& centre, double radius) {
+    return Box{(centre.array() - radius).matrix(), (centre.array() + radius).matrix()};
+  };
+  return enclose(sphere(cone.start, cone.start_radius), sphere(cone.end, cone.end_radius));
+}
+
+Box enclose(const Box& a, const Box& b) {
+  return {a.lower.cwiseMin(b.lower), a.upper.cwiseMax(b.upper)};
+}
+
+Box widen(const Box& box, double margin) {
+  return {(box.lower.array() - margin).matrix(), (box.upper.array() + margin).matrix()};
 }
 
 Vector project(const ImplicitSurface& surface, const Vector& point) {
@@ -65,13 +103,14 @@ Vector project(const ImplicitSurface& surface, const Vector& point) {
   return moved;
 }
 
-Vector project_to_border(const ImplicitSurface& surface, const PlanarCut& cut, const Vector& point) {
+Vector project_to_border(const ImplicitSurface& surface, const Cut& cut, const Vector& point) {
   Vector moved = point;
   for (int step = 0; step < max_newton_steps; ++step) {
-    moved -= cut.height(moved) * cut.normal;
-    const Sample at = surface.function(moved);
-    if (std::abs(at.value) < on_surface) break;
-    moved += newton_step(at, at.gradient - cut.normal.dot(at.gradient) * cut.normal);
+    const Sample above = cut.function(moved);
+    moved -= above.value * above.gradient;
+    const Sample at = surface.function(moved), along = cut.function(moved);
+    if (std::abs(at.value) < on_surface && std::abs(along.value) < on_surface) break;
+    moved += newton_step(at, at.gradient - along.gradient.dot(at.gradient) * along.gradient);
   }
   return moved;
 }
