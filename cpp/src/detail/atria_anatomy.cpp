@@ -103,8 +103,8 @@ Chamber make_right_chamber() {
   Builder builder({Vector(-19, -9, -2), Vector(20, 19, 26)}, {Vector(-17, -11, -7), Vector(-5, -24, -18), 20, 19.5},
                   septum.right_side(), "tricuspid_valve");
   builder.add(make_sleeve("superior_vena_cava", {-24, -5, 14}, {-25, -3, 40}, 9), 10);
-  builder.add(make_sleeve("inferior_vena_cava", {-22, -1, -18}, {-23, 6, -37}, 11), 10);
-  builder.add(make_sleeve("coronary_sinus", {-9, -5, -17}, {2, 1, -26.5}, 5), 6);
+  builder.add(make_sleeve("inferior_vena_cava", {-23, 0, -18}, {-24, 8, -37}, 11), 10);
+  builder.add(make_sleeve("coronary_sinus", {-10, -3, -18}, {2, 4, -27}, 5), 6);
   const RoundCone upper{Vector(-20, -18, 13), Vector(-4, -42, 19), 11, 4.5};
   const RoundCone lower{Vector(-23, -22, 3), Vector(-4, -42, 19), 11, 4.5};
   const auto appendage = [=](const Vector& point) { return smooth_union(sample(upper, point), sample(lower, point), 8); };
