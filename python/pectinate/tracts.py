@@ -40,6 +40,8 @@ class Tract:
         Positive; infinity: fibres follow it exactly; 1 pulls about as much as one neighbouring triangle.
     description
         For people.
+    label
+        A few letters to mark it by in pictures, such as the number of a row in a table; several tracts may share one.
 
     Raises
     ------
@@ -51,6 +53,7 @@ class Tract:
     name: str = ""
     weight: float = math.inf
     description: str = ""
+    label: str = ""
 
     def __post_init__(self) -> None:
         """Check and copy what was given."""

@@ -8,7 +8,7 @@
   "surface": {"source": ..., "vertices": ..., "triangles": ..., "area": ..., "bounding_box": ..., "checksum": ...},
   "loops": {"mitral valve": [x, y, z]},
   "boundary": [{"loop": "mitral valve", "rule": "parallel"}, {"loop": 2, "rule": "perpendicular", "weight": 5.0}],
-  "tracts": [{"name": "Bachmann's bundle", "points": [[x, y, z], [x, y, z]]}]
+  "tracts": [{"name": "Bachmann's bundle", "label": "1", "points": [[x, y, z], [x, y, z]]}]
 }
 ```
 
@@ -80,7 +80,7 @@ def write_tracts(tracts: TractSet, path: str | os.PathLike[str]) -> None:
 
 
 def _read_tract(place: Place) -> Tract:
-    keys = place.keys(("points",), ("name", "description", "weight"))
+    keys = place.keys(("points",), ("name", "description", "label", "weight"))
     points = [point.point() for point in keys["points"].items()]
     if len(points) < _LEAST_POINTS:
         raise keys["points"].error(f"{len(points)} points", "a tract has at least two")
@@ -89,6 +89,7 @@ def _read_tract(place: Place) -> Tract:
         name=keys["name"].text() if "name" in keys else "",
         weight=keys["weight"].positive() if "weight" in keys else math.inf,
         description=keys["description"].text() if "description" in keys else "",
+        label=keys["label"].text() if "label" in keys else "",
     )
 
 
@@ -132,7 +133,7 @@ def _condition(condition: BoundaryCondition) -> dict[str, Any]:
 
 
 def _tract(tract: Tract) -> str:
-    head = {"name": tract.name, "description": tract.description} | _weight(tract.weight)
+    head = {"name": tract.name, "label": tract.label, "description": tract.description} | _weight(tract.weight)
     rows = [f"{_json(key)}: {_json(value)}" for key, value in head.items() if value != ""]
     rows.append(f'"points": {_block("[", [_json(point) for point in tract.points.tolist()], "]")}')
     return _block("{", rows, "}")
