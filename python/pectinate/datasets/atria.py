@@ -21,7 +21,7 @@ FIBRE_RULES = MappingProxyType(
         2: "Over the roof of the left atrium fibres run from front to back: the septopulmonary bundle.",
         3: "Round the mitral and the tricuspid valve fibres are circles.",
         4: "Outside, the sleeve of the superior vena cava has longitudinal fibres.",
-        5: "On the front of the right atrium fibres turn gradually from Bachmann's bundle to the tricuspid valve's circles.",
+        5: "On the front of the right atrium fibres turn gradually from Bachmann's bundle to the circles of the valve.",
         6: "On the right appendage fibres run towards its tip.",
         7: "Outside, the sleeves of the pulmonary veins are wrapped in circles.",
         8: "From between the veins of either side fibres run to the posterior wall.",
