@@ -223,8 +223,11 @@ TEST_CASE("the endocardium lies inside the epicardium, about the wall's thicknes
       walls.push_back((vector(vertex) - foot).norm());
     }
     std::sort(walls.begin(), walls.end());
-    MESSAGE(walls.front(), " ", walls[walls.size() / 100], " ", walls[walls.size() / 2], " ",
-            walls[walls.size() * 99 / 100], " ", walls.back());
+    CHECK(walls.front() > 0.93 * atrial_wall_thickness);
+    CHECK(walls[walls.size() / 2] < 1.1 * atrial_wall_thickness);
+    CHECK(walls[walls.size() * 95 / 100] < 1.5 * atrial_wall_thickness);
+    CHECK(walls.back() < 2.5 * atrial_wall_thickness);  // under a fillet
+    MESSAGE(walls.front(), " ", walls[walls.size() / 2], " ", walls[walls.size() * 95 / 100], " ", walls.back());
   }
 }
 
