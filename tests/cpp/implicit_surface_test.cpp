@@ -21,7 +21,7 @@ using Function = std::function<Sample(const Vector&)>;
 Vector random_point(Random& random, const Box& box) {
   Vector point;
   for (int axis = 0; axis < 3; ++axis)
-    point[axis] = box.lower[axis] + (box.upper[axis] - box.lower[axis]) * random.uniform();
+    point[axis] = box.lower[axis] + (box.upper[axis] - box.lower[axis]) * random.unit();
   return point;
 }
 
@@ -110,7 +110,7 @@ TEST_CASE("points drawn to a curved border lie on the surface and on the cut") {
   REQUIRE(fossa.name == "fossa_ovalis");
   Random random(4);
   for (int i = 0; i < 100; ++i) {
-    Vector off(random.uniform() - 0.5, random.uniform() - 0.5, random.uniform() - 0.5);
+    Vector off(random.unit() - 0.5, random.unit() - 0.5, random.unit() - 0.5);
     const Vector start = fossa.cut.centre + 8 * off.normalized();
     const Vector drawn = project_to_border(surface, fossa.cut, start);
     const bool beside_the_axis = std::abs(off.normalized().dot(Vector(0.74, 0.67, 0).normalized())) < 0.7;

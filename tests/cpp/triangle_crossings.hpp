@@ -30,7 +30,7 @@ inline double volume(const detail::Vector& a, const detail::Vector& b, const det
 /// Whether a line in the plane of a triangle keeps the segment from p to q away from it; lines are its sides and pq.
 inline bool parted_in_plane(const detail::Vector& p, const detail::Vector& q, const Corners& t) {
   const detail::Vector normal = (t[1] - t[0]).cross(t[2] - t[0]);
-  for (const detail::Vector& side : {t[1] - t[0], t[2] - t[1], t[0] - t[2], q - p}) {
+  for (const detail::Vector side : {t[1] - t[0], t[2] - t[1], t[0] - t[2], q - p}) {
     const detail::Vector across = normal.cross(side);
     const auto [low, high] = std::minmax({across.dot(t[0]), across.dot(t[1]), across.dot(t[2])});
     const auto [from, to] = std::minmax({across.dot(p), across.dot(q)});
