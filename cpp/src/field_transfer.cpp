@@ -10,6 +10,7 @@
 #include "detail/field_of_directions.hpp"
 #include "detail/fit_checks.hpp"
 #include "detail/mesh_geometry.hpp"
+#include "detail/number_text.hpp"
 #include "pectinate/comparison.hpp"
 #include "pectinate/constraints.hpp"
 #include "pectinate/errors.hpp"
@@ -156,7 +157,7 @@ Transfer transfer_by_nearest_point(const SurfaceMesh& source, const OrientationF
                                    double maximum_distance) {
   detail::check_is_on(source, field);
   if (!(maximum_distance > 0)) {
-    throw InvalidOption("maximum_distance is " + std::to_string(maximum_distance) +
+    throw InvalidOption("maximum_distance is " + detail::number_text(maximum_distance) +
                         ", but must be positive; infinity sets no limit");
   }
   std::vector<Vec3> centres;

@@ -144,6 +144,22 @@ TEST_CASE("missing fibres stay missing unless they are to be filled") {
   }
 }
 
+TEST_CASE("over the greatest length fibres with a little noise become one, also beside components without any") {
+  const SurfaceMesh mesh = together(jittered_grid(60, 60), moved(grid(60, 60), {70, 0, 0})).mesh();
+  Random random(4);
+  const auto field = field_of(mesh, [&](const Vector& at, const Vector&) -> Vector {
+    const double angle = 0.5 + 0.1 * normal_number(random);
+    return at.x() > 65 ? Vector::Zero() : Vector(std::cos(angle), std::sin(angle), 0);
+  });
+  const auto result = smooth(mesh, field, {.length = 10 * mesh.bounding_box_diagonal(), .fill_missing = true});
+  const Vector one = vector(result.field.directions()[0]);
+  CHECK(line_angle(one, Vector(std::cos(0.5), std::sin(0.5), 0)) < 0.01);
+  for (std::int32_t t = 0; t < count_of(mesh); ++t) {
+    if (!field.has_direction(t)) continue;
+    CHECK(line_angle(vector(result.field.directions()[t]), one) < 1e-3);
+  }
+}
+
 TEST_CASE("signs change nothing, and rotation and scale with length nothing but rounding") {
   const Soup soup = demo(3);
   const SurfaceMesh mesh = soup.mesh();
@@ -183,9 +199,15 @@ TEST_CASE("smoothing options out of range are refused") {
   const SurfaceMesh mesh = grid(3, 3).mesh();
   const auto field = constant_field(mesh, {1, 0, 0});
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  for (const double length : {0.0, -1.0, nan, infinity}) {
+  const double diagonal = mesh.bounding_box_diagonal();
+  for (const double length : {0.0, -1.0, nan, infinity, 1e300, 0.99e-6 * diagonal, 10.01 * diagonal}) {
     CHECK_THROWS_AS(smooth(mesh, field, {.length = length}), InvalidOption);
   }
+  for (const double length : {1.01e-6 * diagonal, 9.99 * diagonal}) {
+    CHECK(smooth(mesh, field, {.length = length}).field.count(DirectionStatus::valid) == mesh.triangle_count());
+  }
+  CHECK_THROWS_WITH_AS(smooth(mesh, field, {.length = 1e300}), doctest::Contains("length is 1e+300, but"),
+                       InvalidOption);
   for (const double angle : {0.0, 2.0, nan}) {
     CHECK_THROWS_AS(smooth(mesh, field, {.outlier_angle = angle}), InvalidOption);
   }
