@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 import pectinate
-from meshes import Mesh, grid, octahedron, two_components
+from marks import needs_map
+from meshes import Mesh, grid, octahedron, two_components, with_hole
 from pectinate import Model, add_noise, compare
 from pectinate.angle_statistics import angle_statistics, angle_statistics_per_region
 from pectinate.errors import InvalidField, InvalidMesh, InvalidOption
@@ -22,14 +23,6 @@ from pectinate.errors import InvalidField, InvalidMesh, InvalidOption
 def with_angle(mesh: Mesh, degrees: float) -> Model:
     angle = math.radians(degrees)
     return pectinate.load((*mesh, np.tile([math.cos(angle), math.sin(angle), 0], (len(mesh[1]), 1))))
-
-
-def with_hole(columns: int, size: float) -> Mesh:
-    """A square of one size with a square hole in its middle, a little to the right."""
-    vertices, triangles = grid(columns, columns, spacing=size / columns)
-    centres = vertices[triangles].mean(axis=1)
-    inside = (np.abs(centres[:, 0] - 0.6 * size) < size / 8) & (np.abs(centres[:, 1] - size / 2) < size / 8)
-    return vertices, triangles[~inside]
 
 
 def test_the_angle_between_two_constant_fields():
@@ -85,6 +78,7 @@ def test_by_the_nearest_point():
         compare(coarse, above, how="nearest", maximum_distance=-1)
 
 
+@needs_map
 def test_through_the_disks():
     names = {"hole": np.array([0.6, 0.5, 0])}
     small = with_angle(with_hole(16, 1.0), 20).with_loop_points(names)
