@@ -90,14 +90,9 @@ CALLS: list[tuple[Callable[..., Any], str, tuple[Any, ...]]] = [
     (lambda inner_point: pectinate.parameterize(flat(), inner_point=inner_point), "inner_point", ()),
 ]
 # Words by which messages name an argument where they need not say its name.
-KNOWN_AS = {
-    "number": "tract",
-    "outer_loop": "loop",
-    "inner_loop": "loop",
-    "outer_loops": "loop",
-    "loops": "loop",
-    "loop_pairs": "loop",
-}
+KNOWN_AS = {"number": "tract"} | dict.fromkeys(
+    ("outer_loop", "inner_loop", "outer_loops", "loops", "loop_pairs"), "loop"
+)
 
 
 @pytest.mark.parametrize(("call", "name", "right"), CALLS, ids=lambda value: value if isinstance(value, str) else "")
