@@ -98,6 +98,34 @@ def test_through_the_disks():
         compare(small, large, how="disks", outer_loops=("door", None))
 
 
+@needs_map
+def test_the_chosen_outer_loops_become_the_circles():
+    model = with_angle(with_hole(16, 1.0), 0).with_loop_points({"hole": np.array([0.6, 0.5, 0]), "rim": np.zeros(3)})
+    pairs = [("hole", "hole"), ("rim", "rim")]
+    angles = compare(model, model, how="disks", outer_loops=("hole", "hole"), loop_pairs=pairs).angles
+    assert np.nanmax(angles) < 1e-6
+    for outer_loops in (("hole", None), (None, "hole")):
+        with pytest.raises(InvalidOption, match="is of an outer loop and an inner one"):
+            compare(model, model, how="disks", outer_loops=outer_loops, loop_pairs=pairs)
+
+
+@pytest.mark.parametrize(
+    ("how", "options"),
+    [
+        ("same", {"maximum_distance": 2.0}),
+        ("disks", {"maximum_distance": 2.0}),
+        ("same", {"outer_loops": (0, None)}),
+        ("nearest", {"outer_loops": (None, 0)}),
+        ("same", {"loop_pairs": []}),
+        ("nearest", {"loop_pairs": [(0, 0)]}),
+    ],
+)
+def test_options_of_another_way_are_refused(how, options):
+    (name,) = options
+    with pytest.raises(InvalidOption, match=f"{name} is given, but belongs to how='"):
+        compare(with_angle(grid(), 0), with_angle(grid(), 0), how=how, **options)
+
+
 def test_surfaces_must_be_the_same_or_have_a_disk():
     with pytest.raises(InvalidField, match="not the same triangles"):
         compare(with_angle(grid(), 0), with_angle(grid(5, 3), 0))

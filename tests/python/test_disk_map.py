@@ -12,7 +12,7 @@ import pectinate
 from drawings import flat
 from marks import needs_map
 from meshes import annulus, grid
-from pectinate import parameterize
+from pectinate import _core, parameterize
 from pectinate.errors import Error, InvalidOption
 
 
@@ -50,6 +50,17 @@ def test_the_inner_point_is_where_u_is_zero():
     assert model.mesh.vertices[np.argmin(disk.u)].tolist() == [5, 4, 0]
     with pytest.raises(Error):
         parameterize(model, inner_point=[math.nan, 0, 0])
+
+
+@pytest.mark.skipif(_core.has_parameterization(), reason="pectinate was built with CGAL")
+def test_a_build_without_the_map_says_so():
+    for call in (
+        lambda: parameterize(flat()),
+        lambda: pectinate.interpolate(flat(), pectinate.TractSet(), method="reference_frame"),
+        lambda: pectinate.interpolate(flat(), pectinate.TractSet(), outer_loop=0),
+    ):
+        with pytest.raises(Error, match="built without CGAL"):
+            call()
 
 
 def test_an_inner_point_that_is_none():
