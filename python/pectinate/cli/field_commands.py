@@ -109,10 +109,18 @@ def _tracts_of_two(arguments: argparse.Namespace) -> Sequence[Path | None]:
 
 
 def _check_outputs(arguments: argparse.Namespace) -> None:
-    """Refuse what cannot be written before any long work."""
+    """Refuse what cannot be written, and what is said of files that are not asked for, before any long work."""
+    _check_serves(arguments, "--out", arguments.outputs, {"second_vectors": "--second", "per_vertex": "--per-vertex"})
+    _check_serves(arguments, "--figure", arguments.figure, {"views": "--views", "separation_distance": "--separation"})
     check_suffixes("--out", arguments.outputs, _SUFFIXES)
     check_figure(arguments)
     check_folders(arguments.outputs if arguments.figure is None else [*arguments.outputs, arguments.figure])
+
+
+def _check_serves(arguments: argparse.Namespace, output: str, wanted: object, flags: dict[str, str]) -> None:
+    for name, flag in flags.items():
+        if getattr(arguments, name, None) not in (None, False) and not wanted:
+            raise UsageError(f"{flag} serves {output} alone, which is not given; add it or leave {flag} out")
 
 
 def _save(result: InterpolatedField | SmoothedField | Comparison, arguments: argparse.Namespace) -> list[Path]:

@@ -52,5 +52,5 @@ def in_flags(message: str) -> str:
     """
     for name, flag in _FLAGS.items():
         message = re.sub(rf"\b{name}='([^']*)'", rf"{flag} \1", message)
-        message = re.sub(rf"\b{name}\b" if "_" in name else rf"^{name}\b(?= is )", flag, message)
+        message = re.sub(rf"\b{name}\b" if "_" in name else rf"^{name}\b(?= is | = )", flag, message)
     return message
