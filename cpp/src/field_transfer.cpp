@@ -79,7 +79,7 @@ void check_disk(const SurfaceMesh& mesh, const Parameterization& disk, const std
   }
 }
 
-/// The image of a loop's hole; of the outer loop, the origin.
+/// The image of a loop's hole.
 Vector2d hole_centre(const Parameterization& disk, std::int32_t loop, const std::string& name) {
   const auto loop_name = name + " loop " + std::to_string(loop) + " of loop_pairs";
   const auto loop_count = static_cast<std::int32_t>(disk.loop_centres.size());
@@ -87,7 +87,6 @@ Vector2d hole_centre(const Parameterization& disk, std::int32_t loop, const std:
     throw InvalidOption(loop_name + " does not exist; the surface has boundary loops 0 to " +
                         std::to_string(loop_count - 1));
   }
-  if (loop == disk.outer_loop) return Vector2d::Zero();
   const auto& [x, y] = disk.loop_centres[loop];
   if (!(std::hypot(x, y) <= greatest_radius)) {
     throw InvalidOption(loop_name + " bounds a fragment that has no place in the disk; choose another one");

@@ -118,7 +118,7 @@ TEST_CASE("boundary: any tract prevails over it, or is averaged with it") {
   CHECK(line_angle(vector(shared->direction), Vector(std::cos(7.5 * degree), std::sin(7.5 * degree), 0)) < 1e-12);
 }
 
-TEST_CASE("the boundary loop nearest to a point") {
+TEST_CASE("the boundary loop and the surface point nearest to a point") {
   const auto mesh = cylinder(20, 5, 1, 3).mesh();
   for (const std::int32_t loop : {0, 1}) {
     const double z = mesh.boundary_loops()[loop].centroid[2];
@@ -131,6 +131,9 @@ TEST_CASE("the boundary loop nearest to a point") {
                           .mesh();
   CHECK(nearest_boundary_loop(sparse, {10, 1.9, 0}) == 0);
   CHECK(nearest_boundary_loop(sparse, {10, 2.1, 0}) == 1);
+  CHECK_THROWS_WITH_AS(nearest_surface_points(mesh, std::vector<Vec3>{{0, 0, 0}, {0, 1e11, 0}}),
+                       doctest::Contains("point 1 is not finite, or farther away"), InvalidOption);
+  CHECK_THROWS_AS(nearest_surface_points(mesh, std::vector<Vec3>{{0, nan, 0}}), InvalidOption);
   CHECK_THROWS_AS(nearest_boundary_loop(sphere(1).mesh(), {0, 0, 0}), InvalidMesh);
   CHECK_THROWS_AS(nearest_boundary_loop(mesh, {0, nan, 0}), InvalidOption);
 }

@@ -220,6 +220,15 @@ TEST_CASE("constraints: reversing tracts and changing their order changes nothin
   }
 }
 
+TEST_CASE("constraints: whatever tracts are drawn, triangles and conflicts are in order") {
+  const auto mesh = torus(30, 12).mesh();
+  const auto constraints = make_constraints(mesh, random_tracts(mesh, 12, 3), {});
+  check_constraints(mesh, constraints);
+  const auto own = [](const ConstraintConflict& conflict) { return conflict.kept == conflict.dropped; };
+  CHECK(std::ranges::any_of(constraints.conflicts, own));
+  CHECK_FALSE(std::ranges::all_of(constraints.conflicts, own));
+}
+
 TEST_CASE("constraints: turning everything turns the result") {
   const auto rotation = some_rotation();
   const auto turned = [&](const Vector& v) { return Vector(rotation * v); };

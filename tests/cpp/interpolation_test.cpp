@@ -284,6 +284,10 @@ TEST_CASE("without constraints the field is the smoothest one") {
     const auto other = interpolate(strip, random_rows(strip, 3, random));
     CHECK(dirichlet_energy(strip, result.field) < dirichlet_energy(strip, other.field));
   }
+  // Its magnitude is scaled to a greatest of 1, not cut off there.
+  const auto confidence = interpolate(sphere(3).mesh(), Rows{}).confidence;
+  CHECK(std::ranges::count_if(confidence, [](double c) { return c > 0.99999; }) < 100);
+  CHECK(*std::ranges::max_element(confidence) == doctest::Approx(1).epsilon(1e-12));
 }
 
 TEST_CASE("on a surface without sides the field does not depend on where the seam runs") {

@@ -185,6 +185,35 @@ TEST_CASE("signs change nothing, and rotation and scale with length nothing but 
   }
 }
 
+TEST_CASE("on surfaces without sides it does not matter where the seam runs, and nothing passes a barrier") {
+  for (const Soup& soup : {moebius_strip(40, 5), klein_bottle(24, 14)}) {
+    const SurfaceMesh mesh = soup.mesh();
+    auto vectors = random_field(mesh, 5).directions();
+    std::vector<std::int32_t> label;
+    for (std::int32_t t = 0; t < count_of(mesh); ++t) label.push_back(centre(mesh, t).x() > 0 ? 1 : 0);
+    const auto smoothed = [&](const SurfaceMesh& on) {
+      return smooth(on, OrientationField::from_triangle_vectors(on, vectors), {.length = 0.4}, label);
+    };
+    const auto expected = smoothed(mesh);
+    Random random(11);
+    Soup wound = soup;
+    for (auto& [a, b, c] : wound.triangles) {
+      if (random.below(2) == 0) std::swap(a, b);
+    }
+    const auto elsewhere = smoothed(wound.mesh());
+    const auto others = random_field(mesh, 6).directions();
+    for (std::int32_t t = 0; t < count_of(mesh); ++t) {
+      if (label[t] == 0) vectors[t] = others[t];
+    }
+    const auto changed = smoothed(mesh);
+    for (std::int32_t t = 0; t < count_of(mesh); ++t) {
+      const Vector line = vector(expected.field.directions()[t]);
+      CHECK(line_angle(vector(elsewhere.field.directions()[t]), line) <= 1e-8);
+      if (label[t] == 1) CHECK(line_angle(vector(changed.field.directions()[t]), line) <= 1e-8);
+    }
+  }
+}
+
 TEST_CASE("surfaces of every kind are smoothed") {
   for (const Soup& soup : {one_triangle(), tetrahedron(), sphere(2), torus(14, 9), moebius_strip(30, 4),
                            klein_bottle(20, 12), together(one_triangle(), moved(grid(4, 4), {9, 0, 0}))}) {
@@ -211,7 +240,10 @@ TEST_CASE("smoothing options out of range are refused") {
   for (const double angle : {0.0, 2.0, nan}) {
     CHECK_THROWS_AS(smooth(mesh, field, {.outlier_angle = angle}), InvalidOption);
   }
-  CHECK_THROWS_AS(smooth(mesh, field, {}, std::vector<std::int32_t>{1, 2}), InvalidOption);
+  CHECK(smooth(mesh, field, {.outlier_angle = std::numbers::pi / 2}).outliers == std::vector<std::uint8_t>(18, 0));
+  for (const std::size_t count : {1, 17, 19}) {
+    CHECK_THROWS_AS(smooth(mesh, field, {}, std::vector<std::int32_t>(count)), InvalidOption);
+  }
   CHECK_THROWS_AS(smooth(one_triangle().mesh(), field), InvalidField);
 }
 
