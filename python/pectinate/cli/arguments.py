@@ -102,7 +102,7 @@ def _add_placement(parser: argparse.ArgumentParser) -> None:
     add("--threads", "thread_count", whole, "N", "the result does not depend on it")
     group.add_argument(
         "--abrupt-turn-angle",
-        type=degrees,
+        type=degrees(180),
         metavar="DEGREES",
         help="a streamline ends where the field turns by more between two triangles "
         f"(default: {math.degrees(DEFAULTS['abrupt_turn_angle']):g}; 180: never)",

@@ -42,7 +42,7 @@ def place(arguments: argparse.Namespace) -> None:
 
 def info(arguments: argparse.Namespace) -> None:
     """Describe the surface and the field of a file."""
-    summary = with_loop_names(load_surface(arguments), arguments).summary()
+    summary = with_loop_names(load_surface(arguments), arguments.tracts).summary()
     if arguments.json:
         report.print_json(summary)
     elif not arguments.quiet:
