@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
 from pectinate import _core
@@ -17,11 +17,15 @@ from pectinate.errors import InvalidField, InvalidMesh
 from pectinate.figure.files import check_picture_path, save_picture
 from pectinate.figure.sheet import draw_sheet
 from pectinate.summary import summarize
+from pectinate.viewer import Lines, Page, Part
+from pectinate.viewer.parts import Values, named_values
 
 if TYPE_CHECKING:
     from pectinate.io.units import UnitDecision
 
 Location = Literal["triangle", "vertex"]
+
+_TRACT_RADIUS = 0.005
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,6 +203,67 @@ class Model:
         """
         check_picture_path(path)
         return save_picture(draw_sheet((self.mesh.vertices, self.mesh.triangles), **sheet_options), path)
+
+    def part(  # noqa: PLR0913
+        self,
+        name: str = "",
+        *,
+        tracts: Sequence[ArrayLike] = (),
+        tract_radius: float | None = None,
+        surface_values: Values | None = None,
+        visible: bool = True,
+    ) -> Part:
+        """Make a part of an interactive page, which may have several, see `pectinate.viewer.Page`.
+
+        Parameters
+        ----------
+        name
+            Beside its switch.
+        tracts
+            Lines (k, 3), mm, drawn black, such as `TractSet.curves_on` makes.
+        tract_radius
+            mm; by default a 200th of the surface's diagonal.
+        surface_values
+            Numbers per triangle or vertex of `mesh`, as in `figure`; several by name.
+        visible
+            Whether it is switched on at first.
+
+        Raises
+        ------
+        InvalidOption
+            A tract is no line, or the radius is not above 0.
+        """
+        radius = _TRACT_RADIUS * self.mesh.bounding_box_diagonal if tract_radius is None else tract_radius
+        return Part(
+            name,
+            (self.mesh.vertices, self.mesh.triangles),
+            tracts=Lines.of(tracts, radius) if len(tracts) else None,
+            surface_values=named_values(surface_values),
+            visible=visible,
+        )
+
+    def show(
+        self,
+        *,
+        tracts: Sequence[ArrayLike] = (),
+        surface_values: Values | None = None,
+        **page_options: Any,
+    ) -> Page:
+        """Show the surface without streamlines in the browser, or in Jupyter.
+
+        Parameters
+        ----------
+        tracts, surface_values
+            As in `part`.
+        page_options
+            Of `pectinate.viewer.Page`: `markers`, `views`, `title`, ...
+
+        Raises
+        ------
+        InvalidOption, MissingDependency
+            As `part` and `Page`.
+        """
+        return Page(self.part(tracts=tracts, surface_values=surface_values), **page_options).show()
 
     def summary(self) -> dict[str, Any]:
         """Everything worth knowing before streamlines are placed, ready for JSON.

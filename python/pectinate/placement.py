@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,7 @@ from pectinate.figure.sheet import draw_sheet
 from pectinate.io import load, streamlines
 from pectinate.model import Model
 from pectinate.statistics import PlacementStatistics
+from pectinate.viewer import Lines, Page, Part
 
 _OPTION_NAMES = (
     "separation_distance",
@@ -34,6 +36,7 @@ _OPTION_NAMES = (
     "random_seed",
     "thread_count",
 )
+_PAGE_OPTIONS = {"markers", "notes", "views", "axes", "shown_values", "style"}
 _ENUMERATIONS: dict[str, type[Enum]] = {"method": _core.PlacementMethod, "occupancy": _core.OccupancyModel}
 
 
@@ -257,6 +260,72 @@ class Placement:
             `.vtp` without PyVista.
         """
         streamlines.save(self, Path(path), **tube_options)
+
+    def part(
+        self, name: str = "", *, tube_radius: float | None = None, taper_length: float | None = None, **options: Any
+    ) -> Part:
+        """Make a part of an interactive page, which may have several, see `pectinate.viewer.Page`.
+
+        Parameters
+        ----------
+        name
+            Beside its switch.
+        tube_radius, taper_length
+            As `radius` and `taper_length` of `tubes`; the page has a slider for the radius.
+        options
+            Of `Model.part`: `tracts`, `surface_values`, `visible`, ...
+
+        Raises
+        ------
+        InvalidOption
+            An option is out of its range.
+        """
+        lines = Lines(
+            self.points,
+            self.offsets,
+            self.default_tube_radius() if tube_radius is None else tube_radius,
+            _core.default_taper_length if taper_length is None else taper_length,
+        )
+        return replace(self.model.part(name, **options), streamlines=lines)
+
+    def page(self, *, title: str = "", **options: Any) -> Page:
+        """Make an interactive page: one HTML file that needs neither a server nor the network.
+
+        Parameters
+        ----------
+        title
+            Above the switches.
+        options
+            Of `part` (`tube_radius`, `tracts`, `surface_values`, ...) and of `pectinate.viewer.Page` (`markers`,
+            `views`, ...).
+
+        Raises
+        ------
+        InvalidOption, MissingDependency
+            As `part` and `Page`.
+        """
+        of_page = {key: options.pop(key) for key in _PAGE_OPTIONS & options.keys()}
+        statistics = self.statistics
+        notes = [
+            f"{statistics.streamline_count:,} streamlines, {self.options['separation_distance']:g} mm apart, mean "
+            f"length {statistics.mean_length:.1f} mm"
+        ]
+        return Page(self.part(**options), **{"title": title, "notes": notes, **of_page})
+
+    def show(self, **options: Any) -> Page:
+        """Show the surface with the streamlines in the browser, to be turned and zoomed; in Jupyter, in the notebook.
+
+        Parameters
+        ----------
+        options
+            As of `page`.
+
+        Raises
+        ------
+        InvalidOption, MissingDependency
+            As `page`.
+        """
+        return self.page(**options).show()
 
     def figure(
         self,
