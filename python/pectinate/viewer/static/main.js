@@ -1,5 +1,12 @@
 // Puts the page together.
 
+const COLOR_BAR_ROOM = 90;
+const FOLDED_WIDTH = 60;
+const FINE_RATIO = 2;
+const FINE_DELAY = 250;  // ms
+
+const screenRatio = () => window.devicePixelRatio || 1;
+
 class Viewer {
   constructor(scene, bytes, canvas, overlayCanvas, context) {
     this.scene = scene;
@@ -18,13 +25,20 @@ class Viewer {
   buildPart(part, bytes) {
     const { style } = this.scene;
     const surface = buildSurface(bytes, part.surface);
-    const tubes = (lines, color) => lines
-      && this.picture.addTubes(buildTubes(bytes, lines), color, style.tube_gloss, lines.radius);
+    const clouds = [{ points: surface.positions }];
+    const tubes = (lines, color) => {
+      if (!lines) return null;
+      const geometry = buildTubes(bytes, lines);
+      const { position, thickness } = geometry.attributes;
+      clouds.push({ points: position.array, radii: thickness.array.map((share) => share * lines.radius) });
+      return this.picture.addTubes(geometry, color, style.tube_gloss, lines.radius);
+    };
     const plain = plainGeometry(surface);
     return {
       name: part.name,
       visible: part.visible,
       surface,
+      clouds,
       plain,
       colored: null,
       values: part.values.map((values) => ({ ...values, steps: unpack(bytes, values.steps) })),
@@ -37,9 +51,16 @@ class Viewer {
 
   look(index) {
     const shown = this.parts.filter((part) => part.visible);
-    const clouds = (shown.length ? shown : this.parts).map((part) => part.surface.positions);
-    this.view.frame(this.scene.views[index].rotation, clouds, this.size(), this.scene.margin);
+    const clouds = (shown.length ? shown : this.parts).flatMap((part) => part.clouds);
+    this.view.frame(this.scene.views[index].rotation, clouds, this.size(), this.insets(), this.scene.margin);
     this.requestDraw();
+  }
+
+  // Pixels at the left and at the right that the colour bar and the controls take, where there is room beside them.
+  insets() {
+    const panel = document.getElementById('panel').getBoundingClientRect();
+    const [width] = this.size(), right = width - panel.left, left = this.shownValues >= 0 ? COLOR_BAR_ROOM : 0;
+    return left + right > 0.5 * width || panel.width < FOLDED_WIDTH ? [0, 0] : [left, right];
   }
 
   showLayer(name, shown) {
@@ -80,11 +101,15 @@ class Viewer {
     return [Math.max(this.canvas.clientWidth, 1), Math.max(this.canvas.clientHeight, 1)];
   }
 
+  // Draws soon, and again with finer pixels when nothing has changed for a while.
   requestDraw() {
-    if (!this.frameRequest) this.frameRequest = requestAnimationFrame(() => this.draw());
+    if (!this.frameRequest) this.frameRequest = requestAnimationFrame(() => this.draw(screenRatio()));
+    clearTimeout(this.finePicture);
+    if (screenRatio() < FINE_RATIO) this.finePicture = setTimeout(() => this.draw(FINE_RATIO), FINE_DELAY);
   }
 
-  draw() {
+  // `ratio`: pixels of the picture across one of CSS.
+  draw(ratio) {
     this.frameRequest = 0;
     for (const part of this.parts) {
       part.mesh.visible = part.visible && this.layers.surface;
@@ -92,7 +117,7 @@ class Viewer {
         if (part[layer]) part[layer].visible = part.visible && this.layers[layer];
       }
     }
-    const size = this.size(), ratio = window.devicePixelRatio || 1;
+    const size = this.size();
     this.picture.resize(...size, ratio);
     this.picture.draw(this.view, this.reach(), this.shownValues >= 0, this.layers.markers && this.scene.markers.length);
     Object.assign(this.overlayCanvas, { width: size[0] * ratio, height: size[1] * ratio });
@@ -121,12 +146,13 @@ class Viewer {
 
   // The picture with what is written over it, as a PNG data URL.
   screenshot(written = true) {
-    this.draw();
+    const ratio = Math.max(screenRatio(), FINE_RATIO);
+    this.draw(ratio);
     const canvas = document.createElement('canvas');
     Object.assign(canvas, { width: this.canvas.width, height: this.canvas.height });
     const context = canvas.getContext('2d');
     context.drawImage(this.canvas, 0, 0);
-    if (written) this.drawOverlay(context, this.size(), window.devicePixelRatio || 1);
+    if (written) this.drawOverlay(context, this.size(), ratio);
     return canvas.toDataURL('image/png');
   }
 }
@@ -206,7 +232,7 @@ async function start() {
   viewer.look(0);
   followPointers(canvas, viewer.view, () => viewer.requestDraw());
   window.addEventListener('resize', () => viewer.requestDraw());
-  viewer.draw();
+  viewer.draw(screenRatio());
   message.hidden = true;
   window.pectinate = viewer;
   root.dataset.milliseconds = Math.round(performance.now());

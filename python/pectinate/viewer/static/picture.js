@@ -22,6 +22,7 @@ class Picture {
       source: { value: null }, sourceSize: { value: new THREE.Vector2() }, direction: { value: new THREE.Vector2() },
       deviation: { value: 1 },
     }, THREE.DoubleSide, { BLUR_REACH });
+    this.blurCamera = new THREE.Camera();
     this.blurQuad = new THREE.Scene();
     const quad = new THREE.Mesh(new THREE.PlaneGeometry(2, 2), this.blur);
     quad.frustumCulled = false;
@@ -113,7 +114,7 @@ class Picture {
       uniforms.direction.value.set(x, y);
       this.renderer.setRenderTarget(this.targets[to]);
       this.renderer.clear();
-      this.renderer.render(this.blurQuad, this.camera);
+      this.renderer.render(this.blurQuad, this.blurCamera);
     }
     this.uniforms.surroundings.value = this.targets[0].texture;
     this.uniforms.surroundingsSize.value.set(width, height);

@@ -77,25 +77,25 @@ const SURFACE_FRAGMENT = `${LIGHT_FUNCTIONS}${FOLD_FUNCTIONS}
     gl_FragColor = vec4(clamp(color, 0.0, 1.0) * foldShadow(), 1.0);
   }`;
 
-// A tube's vertex is its centre and a unit vector away from it; the radius comes last.
-const TUBE_VERTEX = `
+// A tube's vertex is its centre and a unit vector away from it; the radius comes last. Its light is computed at the
+// vertices, as in the pictures: highlights on dark tubes become broad and calm.
+const TUBE_VERTEX = `${LIGHT_FUNCTIONS}
   attribute vec3 offset;
   attribute float thickness;
   uniform float radius;
-  varying vec3 vNormal;
+  uniform vec3 tubeColor;
+  uniform float tubeGloss;
+  varying vec3 vColor;
   void main() {
-    vNormal = normalMatrix * offset;
+    vec3 n = normalize(normalMatrix * offset);
+    vColor = clamp(tubeColor * light(n, 0.0) + tubeGloss * gloss(n), 0.0, 1.0);
     gl_Position = projectionMatrix * modelViewMatrix * vec4(position + radius * thickness * offset, 1.0);
   }`;
 
-const TUBE_FRAGMENT = `${LIGHT_FUNCTIONS}${FOLD_FUNCTIONS}
-  uniform vec3 tubeColor;
-  uniform float tubeGloss;
-  varying vec3 vNormal;
+const TUBE_FRAGMENT = `${FOLD_FUNCTIONS}
+  varying vec3 vColor;
   void main() {
-    vec3 n = normalize(vNormal);
-    vec3 color = tubeColor * light(n, 0.0) + tubeGloss * gloss(n);
-    gl_FragColor = vec4(clamp(color, 0.0, 1.0) * foldShadow(), 1.0);
+    gl_FragColor = vec4(vColor * foldShadow(), 1.0);
   }`;
 
 const DEPTH_VERTEX = `
