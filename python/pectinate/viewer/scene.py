@@ -54,12 +54,13 @@ def describe_scene(
         raise InvalidOption("there is nothing to show: give at least one part")
     if not views:
         raise InvalidOption("views is empty: give at least one")
-    points = np.concatenate([_used_vertices(part) for part in parts])
+    vertices = [_used_vertices(part) for part in parts]
+    points = np.concatenate(vertices)
     pack = ArrayPack()
     scales = _scales(parts)
     scene = {
         "parts": [_part(part, scales, pack) for part in parts],
-        "markers": [{"position": [float(x) for x in marker.position], "text": marker.text} for marker in markers],
+        "markers": [_marker(marker, vertices) for marker in markers],
         "views": [_view(resolve_view(view, points, axes)) for view in views],
         "scales": [_scale(name, scale, label, style) for name, (scale, label) in scales.items()],
         "style": _style(style),
@@ -174,6 +175,13 @@ def _scale(name: str, scale: ColorScale, label: str, style: Style) -> dict[str, 
         "ticks": scale.ticks(),
         "colors": base64.b64encode(rgb).decode("ascii"),
     }
+
+
+def _marker(marker: Marker, vertices: Sequence[NDArray[np.float64]]) -> dict[str, Any]:
+    """A marker, and the part that it is shown with: the one with the nearest vertex."""
+    place = np.asarray(marker.position, dtype=np.float64)
+    distances = [np.linalg.norm(points - place, axis=1).min() for points in vertices]
+    return {"position": place.tolist(), "text": marker.text, "part": int(np.argmin(distances))}
 
 
 def _view(view: View) -> dict[str, Any]:

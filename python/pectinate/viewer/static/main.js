@@ -2,6 +2,7 @@
 
 const COLOR_BAR_ROOM = 90;
 const FOLDED_WIDTH = 60;
+const LARGEST_INSET = 0.35;
 const FINE_RATIO = 2;
 const FINE_DELAY = 250;  // ms
 
@@ -59,8 +60,9 @@ class Viewer {
   // Pixels at the left and at the right that the colour bar and the controls take, where there is room beside them.
   insets() {
     const panel = document.getElementById('panel').getBoundingClientRect();
-    const [width] = this.size(), right = width - panel.left, left = this.shownValues >= 0 ? COLOR_BAR_ROOM : 0;
-    return left + right > 0.5 * width || panel.width < FOLDED_WIDTH ? [0, 0] : [left, right];
+    const [width] = this.size(), right = panel.width < FOLDED_WIDTH ? 0 : width - panel.left;
+    const left = this.shownValues >= 0 ? COLOR_BAR_ROOM : 0;
+    return [left, right].map((taken) => (taken < LARGEST_INSET * width ? taken : 0));
   }
 
   showLayer(name, shown) {
@@ -140,6 +142,7 @@ class Viewer {
 
   visibleMarkers() {
     return this.scene.markers
+      .filter(({ part }) => this.parts[part].visible)
       .map(({ position, text }) => ({ place: this.view.toPicture(position), text }))
       .filter(({ place }) => !this.picture.hides(place, this.view, this.scene.fold_size));
   }
@@ -227,8 +230,8 @@ async function start() {
   root.style.setProperty('--line', cssColor(style.ink_color).replace(')', ', 0.2)').replace('rgb', 'rgba'));
   const bytes = await inflate(document.getElementById('arrays').textContent);
   const viewer = new Viewer(scene, bytes, canvas, document.getElementById('overlay'), context);
-  fillPanel(new Panel(document.getElementById('panel'), scene.title), viewer, scene);
   if (scene.scales.length) viewer.showValues(scene.shown_values);
+  fillPanel(new Panel(document.getElementById('panel'), scene.title), viewer, scene);
   viewer.look(0);
   followPointers(canvas, viewer.view, () => viewer.requestDraw());
   window.addEventListener('resize', () => viewer.requestDraw());

@@ -40,10 +40,12 @@ class Overlay {
     const power = 10 ** Math.floor(Math.log10(longest));
     const mm = Math.max(...ROUND_NUMBERS.map((factor) => factor * power).filter((long) => long <= longest), power);
     const pixels = mm / mmPerPixel;
+    context.fillStyle = this.paper;
+    context.fillRect(14, height - 22, pixels + 4, 7);
     context.fillStyle = this.ink;
     context.fillRect(16, height - 20, pixels, 3);
     context.textAlign = 'center';
-    context.fillText(`${Number(mm.toPrecision(1))} mm`, 16 + 0.5 * pixels, height - 31);
+    this.write(context, `${Number(mm.toPrecision(1))} mm`, 16 + 0.5 * pixels, height - 31);
   }
 
   colorBar(context, [, height], scale, someMissing) {
@@ -58,14 +60,23 @@ class Overlay {
     for (const tick of scale.ticks) {
       const y = top + rows - ((tick - scale.low) / (scale.high - scale.low)) * rows;
       context.fillRect(left + BAR_WIDTH, y - 0.5, 4, 1);
-      context.fillText(String(Number(tick.toPrecision(6))), left + BAR_WIDTH + 8, y);
+      this.write(context, String(Number(tick.toPrecision(6))), left + BAR_WIDTH + 8, y);
     }
-    context.fillText(scale.label, left, top - 16);
+    this.write(context, scale.label, left, top - 16);
     if (!someMissing) return;
     context.fillStyle = this.noValue;
     context.fillRect(left, top + rows + 10, BAR_WIDTH, BAR_WIDTH);
     context.fillStyle = this.ink;
-    context.fillText('none', left + BAR_WIDTH + 8, top + rows + 10 + 0.5 * BAR_WIDTH);
+    this.write(context, 'none', left + BAR_WIDTH + 8, top + rows + 10 + 0.5 * BAR_WIDTH);
+  }
+
+  // Ink with a rim of paper, so that it can be read on the surface too.
+  write(context, text, x, y) {
+    context.lineJoin = 'round';
+    context.lineWidth = 4;
+    context.strokeStyle = this.paper;
+    context.strokeText(text, x, y);
+    context.fillText(text, x, y);
   }
 }
 
