@@ -317,6 +317,7 @@ def place_streamlines(
     thread_count: int = ...,
     progress: Callable[[float], bool | None] | None = None,
 ) -> Placement: ...
+
 default_taper_length: float
 
 def make_tubes(

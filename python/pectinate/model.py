@@ -13,7 +13,7 @@ from PIL import Image
 
 from pectinate import _core
 from pectinate._core import OrientationField, SurfaceMesh
-from pectinate.errors import InvalidField, InvalidMesh
+from pectinate.errors import InvalidField, InvalidMesh, InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
 from pectinate.figure.sheet import draw_sheet
 from pectinate.summary import summarize
@@ -186,6 +186,23 @@ class Model:
         result[self.mesh.input_triangle] = values
         return result
 
+    def to_mesh(self, values: ArrayLike) -> NDArray[np.float64]:
+        """Take numbers of the source's triangles (T,) or vertices (V,) to those of `mesh`.
+
+        Raises
+        ------
+        InvalidOption
+            There is not one number per triangle or per vertex.
+        """
+        array, mesh = np.asarray(values), self.mesh
+        rows = {mesh.input_vertex_count: mesh.input_vertex, mesh.input_triangle_count: mesh.input_triangle}
+        if array.ndim != 1 or array.dtype.kind not in "fiu" or len(array) not in rows:
+            raise InvalidOption(
+                f"values of shape {array.shape} and type {array.dtype}: give one number per triangle "
+                f"({mesh.input_triangle_count},) or vertex ({mesh.input_vertex_count},) of {self.data.source}"
+            )
+        return array.astype(np.float64)[rows[len(array)]]
+
     def figure(self, path: str | os.PathLike[str] | None = None, **sheet_options: Any) -> Image.Image:
         """Draw the surface without streamlines, in one or several views, such as for a map of values on it.
 
@@ -204,7 +221,7 @@ class Model:
         check_picture_path(path)
         return save_picture(draw_sheet((self.mesh.vertices, self.mesh.triangles), **sheet_options), path)
 
-    def part(  # noqa: PLR0913
+    def part(
         self,
         name: str = "",
         *,

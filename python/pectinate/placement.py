@@ -239,16 +239,16 @@ class Placement:
         radius: float = 0.18 / 0.8 * self.options["separation_distance"]
         return radius
 
-    def save(self, path: str | os.PathLike[str], **tube_options: Any) -> None:
+    def save(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Write the streamlines, in the format that the suffix names.
 
         Parameters
         ----------
         path
             `.npz`: all arrays with the surface and the field, see `pectinate.io.streamlines`. `.vtp`: poly-lines with
-            their data, for ParaView (extra `vtk`). `.ply`, `.obj`, `.glb`: tubes.
-        tube_options
-            Of `tubes`, for the last three only.
+            their data, for ParaView (extra `vtk`). `.ply`, `.obj`, `.glb`: tubes. `.html`: an interactive page.
+        options
+            Of `tubes` or of `page`, for files of tubes and pages only.
 
         Raises
         ------
@@ -259,7 +259,7 @@ class Placement:
         MissingDependency
             `.vtp` without PyVista.
         """
-        streamlines.save(self, Path(path), **tube_options)
+        streamlines.save(self, Path(path), **options)
 
     def part(
         self, name: str = "", *, tube_radius: float | None = None, taper_length: float | None = None, **options: Any

@@ -25,21 +25,23 @@ from pectinate._core import StopReason, SurfaceMesh
 from pectinate.errors import InvalidFile, InvalidOption
 from pectinate.io.trimesh_io import write_trimesh
 from pectinate.io.vtk import write_streamlines_vtp
+from pectinate.viewer.page import SUFFIXES as PAGE_SUFFIXES
 
 if TYPE_CHECKING:
     from pectinate.placement import Placement
 
 
-def save(placement: Placement, path: Path, **tube_options: Any) -> None:
+def save(placement: Placement, path: Path, **options: Any) -> None:
     """Write a placement in the format that the suffix names; see `Placement.save`."""
     writers: dict[str, Callable[..., None]] = {".npz": _save_npz, ".vtp": _save_vtp}
     writers |= dict.fromkeys((".ply", ".obj", ".glb"), _save_tubes)
+    writers |= dict.fromkeys(PAGE_SUFFIXES, _save_page)
     suffix = path.suffix.lower()
     if suffix not in writers:
         raise InvalidOption(f"{path}: streamlines cannot be saved as {suffix!r}; use one of {', '.join(writers)}")
-    if tube_options and writers[suffix] is not _save_tubes:
-        raise InvalidOption(f"{path}: {', '.join(tube_options)} is for tubes: .ply, .obj or .glb")
-    writers[suffix](placement, path, **tube_options)
+    if options and writers[suffix] in (_save_npz, _save_vtp):
+        raise InvalidOption(f"{path}: {', '.join(options)} is for tubes or pages: .ply, .obj, .glb or .html")
+    writers[suffix](placement, path, **options)
 
 
 def _save_npz(placement: Placement, path: Path) -> None:
@@ -92,3 +94,7 @@ def _save_vtp(placement: Placement, path: Path) -> None:
 def _save_tubes(placement: Placement, path: Path, **tube_options: Any) -> None:
     tubes = placement.tubes(**tube_options)
     write_trimesh(path, tubes.vertices, tubes.triangles)
+
+
+def _save_page(placement: Placement, path: Path, **page_options: Any) -> None:
+    placement.page(**page_options).save(path)

@@ -117,10 +117,10 @@ def _folded(table: NDArray[Any]) -> NDArray[Any]:
     """Small numbers of either sign, wrapped around, as small ones: 0, -1, 1, -2, ... become 0, 1, 2, 3, ..."""
     bits = 8 * table.dtype.itemsize
     signs = np.where(table >> table.dtype.type(bits - 1), ~table.dtype.type(0), table.dtype.type(0))
-    return (table << table.dtype.type(1)) ^ signs
+    return np.asarray((table << table.dtype.type(1)) ^ signs)
 
 
-def _interleaved(steps: NDArray[np.uint16]) -> NDArray[np.int64]:
+def _interleaved(steps: NDArray[np.integer[Any]]) -> NDArray[np.int64]:
     """Bits of three numbers below 1024, taken in turn."""
     result = np.zeros(len(steps), dtype=np.int64)
     for bit in range(10):

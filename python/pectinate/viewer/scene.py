@@ -100,7 +100,7 @@ def resampled(lines: Lines) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
 
 def _used_vertices(part: Part) -> NDArray[np.float64]:
     vertices, triangles = np.asarray(part.surface[0], dtype=np.float64), np.asarray(part.surface[1])
-    return vertices[np.unique(triangles)]
+    return np.asarray(vertices[np.unique(triangles)])
 
 
 def _part(part: Part, scales: dict[str, tuple[ColorScale, str]], pack: ArrayPack) -> dict[str, Any]:

@@ -11,7 +11,9 @@ from importlib import resources
 from pectinate.errors import MissingDependency
 
 # Its notice, which must stay with it, and the one line of code that follows.
-_LIBRARY = re.compile(r"/\*\*\s*\n \* @license\n(?: \*[^\n]*\n)*? \* Copyright[^\n]*Three\.js Authors.*?\*/\n[^\n]+", re.DOTALL)
+_LIBRARY = re.compile(
+    r"/\*\*\n \* @license\n(?: \*[^\n]*\n)*? \*[^\n]*Three\.js Authors[^\n]*\n(?: \*[^\n/]*\n)* \*/\n[^\n]+"
+)
 
 
 @functools.cache
