@@ -54,11 +54,14 @@ class Browser:
             time.sleep(0.02)
         pytest.fail(f"waited {_PATIENCE} s in vain for: {script}")
 
-    def picture(self, *, written: bool = False) -> NDArray[np.float64]:
-        """The picture as it is now, (h, w, 3), 0 to 255, at the size of the window; without what is written over it."""
-        url = self.run(f"return viewer.screenshot({json.dumps(written)})")
+    def picture(self, *, written: bool = False, ratio: int = 1) -> NDArray[np.float64]:
+        """The picture as it is now, (h, w, 3), 0 to 255, at the size of the window; by default as fast as can be.
+
+        With `written`, markers and scales are there too; `ratio` is the number of pixels drawn across each.
+        """
+        url = self.run(f"return viewer.screenshot({json.dumps(written)}, {ratio})")
         image = Image.open(io.BytesIO(base64.b64decode(url.partition(",")[2])))
-        return np.asarray(image.convert("RGB").reduce(2), dtype=np.float64)
+        return np.asarray(image.convert("RGB").reduce(ratio), dtype=np.float64)
 
     def window(self) -> NDArray[np.float64]:
         """The whole window, controls included, (h, w, 3), 0 to 255."""

@@ -98,7 +98,7 @@ def test_a_page_shows_what_the_picture_shows(
     browser.run(
         "document.querySelectorAll('.views button').forEach((b) => b.textContent === arguments[0] && b.click())", view
     )
-    shown, drawn = browser.picture(), figure(placement, view=view)
+    shown, drawn = browser.picture(ratio=2), figure(placement, view=view)
     assert shown.shape == drawn.shape
     assert overlap(covered(shown), covered(drawn)) > 0.99
     dark = [(picture.max(axis=2) < DARK).ravel() for picture in (shown, drawn)]

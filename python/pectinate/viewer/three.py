@@ -29,7 +29,7 @@ def three_js() -> str:
         packed = resources.files("trimesh.resources").joinpath("templates", "viewer.zip").read_bytes()
         with zipfile.ZipFile(io.BytesIO(packed)) as archive:
             text = archive.read("viewer.html.template").decode("utf-8")
-    except (OSError, KeyError, ValueError) as error:
+    except (OSError, KeyError, zipfile.BadZipFile, ImportError) as error:
         raise _missing() from error
     found = _LIBRARY.search(text)
     if found is None:

@@ -148,8 +148,7 @@ class Viewer {
   }
 
   // The picture with what is written over it, as a PNG data URL.
-  screenshot(written = true) {
-    const ratio = Math.max(screenRatio(), FINE_RATIO);
+  screenshot(written = true, ratio = Math.max(screenRatio(), FINE_RATIO)) {
     this.draw(ratio);
     const canvas = document.createElement('canvas');
     Object.assign(canvas, { width: this.canvas.width, height: this.canvas.height });
