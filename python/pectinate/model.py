@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+import trimesh
 from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
@@ -16,6 +17,8 @@ from pectinate._core import OrientationField, SurfaceMesh
 from pectinate.errors import InvalidField, InvalidMesh, InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
 from pectinate.figure.sheet import draw_sheet
+from pectinate.io.gltf import make_trimesh
+from pectinate.io.vtk_library import surface_dataset
 from pectinate.summary import summarize
 from pectinate.viewer import Lines, Page, Part
 from pectinate.viewer.parts import Values, named_values
@@ -220,6 +223,44 @@ class Model:
         """
         check_picture_path(path)
         return save_picture(draw_sheet((self.mesh.vertices, self.mesh.triangles), **sheet_options), path)
+
+    def to_trimesh(self) -> trimesh.Trimesh:
+        """Make a `trimesh.Trimesh` of `mesh`, in mm, with the same rows."""
+        return make_trimesh(self.mesh.vertices, self.mesh.triangles)
+
+    def to_pyvista(self, values: Mapping[str, ArrayLike] | None = None) -> Any:
+        """Make a PyVista data set of `mesh`.
+
+        Cells have `fiber` (directions, zero where there is none), `elemTag`, both where the model has them, and
+        `input_triangle`; points have `input_vertex`.
+
+        Parameters
+        ----------
+        values
+            More arrays by name, per triangle or vertex of `mesh`.
+
+        Raises
+        ------
+        MissingDependency
+            PyVista is not installed.
+        InvalidOption
+            There is not one row per triangle or vertex.
+        """
+        mesh, per_triangle, per_vertex = self.mesh, {}, {}
+        for name, given in (values or {}).items():
+            array = np.asarray(given)
+            if array.shape[:1] == (mesh.triangle_count,):
+                per_triangle[name] = array
+            elif array.shape[:1] == (len(mesh.vertices),):
+                per_vertex[name] = array
+            else:
+                raise InvalidOption(
+                    f"values {name!r} of shape {array.shape}: give one row per triangle ({mesh.triangle_count}) or "
+                    f"vertex ({len(mesh.vertices)}) of the mesh"
+                )
+        fibres = None if self.field is None else self.field.directions
+        cells = {"fiber": fibres, "elemTag": self.tags, "input_triangle": mesh.input_triangle, **per_triangle}
+        return surface_dataset(mesh.vertices, mesh.triangles, cells, {"input_vertex": mesh.input_vertex, **per_vertex})
 
     def part(
         self,

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from enum import Enum
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import trimesh
 from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
 from pectinate import _core
 from pectinate.errors import InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
+from pectinate.figure.plots import draw_lengths
 from pectinate.figure.sheet import draw_sheet
-from pectinate.io import load, streamlines
+from pectinate.io import lines, load, streamlines
+from pectinate.io.gltf import make_scene
 from pectinate.model import Model
 from pectinate.statistics import PlacementStatistics
 from pectinate.viewer import Lines, Page, Part
@@ -246,9 +249,10 @@ class Placement:
         ----------
         path
             `.npz`: all arrays with the surface and the field, see `pectinate.io.streamlines`. `.vtp`: poly-lines with
-            their data, for ParaView (extra `vtk`). `.ply`, `.obj`, `.glb`: tubes. `.html`: an interactive page.
+            their data as of `to_pyvista`, for ParaView (extra `vtk`). `.ply`, `.obj`: tubes. `.glb`: surface and tubes
+            with materials, in metres with +y up as glTF demands, see `pectinate.io.gltf`. `.html`: an interactive page.
         options
-            Of `tubes` or of `page`, for files of tubes and pages only.
+            Of `tubes` for files of tubes, of `page` for pages, `values` of `to_pyvista` for `.vtp`.
 
         Raises
         ------
@@ -260,6 +264,63 @@ class Placement:
             `.vtp` without PyVista.
         """
         streamlines.save(self, Path(path), **options)
+
+    def to_trimesh(self, **tube_options: Any) -> trimesh.Scene:
+        """Make a `trimesh.Scene`, in mm, with the nodes `surface` and `streamlines` (tubes; none without streamlines).
+
+        Parameters
+        ----------
+        tube_options
+            Of `tubes`.
+
+        Raises
+        ------
+        InvalidOption
+            An option out of its range.
+        """
+        return make_scene(self.mesh, self.tubes(**tube_options))
+
+    def to_pyvista(self, values: Mapping[str, ArrayLike] | None = None) -> Any:
+        """Make a PyVista data set of poly-lines; the surface is that of `model.to_pyvista()`.
+
+        Cells have `line`, `length` (mm), `point_count`, `stop_reason_first` and `stop_reason_last` (by value, with the
+        names in the field data), `triangle_first`, `triangle_last` and `triangle_seed`; points have `line`,
+        `arc_length` (mm), `triangle`, `input_triangle` and `barycentric`.
+
+        Parameters
+        ----------
+        values
+            More arrays of points by name: numbers per triangle or vertex of `mesh`, vertex values interpolated.
+
+        Raises
+        ------
+        MissingDependency
+            PyVista is not installed.
+        InvalidOption
+            There is not one number per triangle or vertex.
+        """
+        return lines.to_polylines(self, values)
+
+    def to_pandas(self, values: Mapping[str, ArrayLike] | None = None) -> Any:
+        """Make a pandas table, a row per streamline, with the cell arrays of `to_pyvista`; stop reasons by name.
+
+        Parameters
+        ----------
+        values
+            More columns by name: means along the lines, by length, of numbers per triangle or vertex of `mesh`.
+
+        Raises
+        ------
+        MissingDependency
+            pandas is not installed.
+        InvalidOption
+            There is not one number per triangle or vertex.
+        """
+        return lines.to_table(self, values)
+
+    def plot_lengths(self, path: str | os.PathLike[str] | None = None, **options: Any) -> Image.Image:
+        """Draw the histogram of lengths (the paper's Fig. 7), with `pectinate.figure.draw_lengths` and its options."""
+        return draw_lengths([self.lengths], path, **options)
 
     def part(
         self, name: str = "", *, tube_radius: float | None = None, taper_length: float | None = None, **options: Any
@@ -280,13 +341,13 @@ class Placement:
         InvalidOption
             An option is out of its range.
         """
-        lines = Lines(
+        drawn = Lines(
             self.points,
             self.offsets,
             self.default_tube_radius() if tube_radius is None else tube_radius,
             _core.default_taper_length if taper_length is None else taper_length,
         )
-        return replace(self.model.part(name, **options), streamlines=lines)
+        return replace(self.model.part(name, **options), streamlines=drawn)
 
     def page(self, *, title: str = "", **options: Any) -> Page:
         """Make an interactive page: one HTML file that needs neither a server nor the network.
