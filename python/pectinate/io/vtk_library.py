@@ -90,7 +90,8 @@ def polyline_dataset(
     dataset.lines = np.insert(np.arange(len(points)), offsets[:-1], np.diff(offsets))
     for store, arrays in ((dataset.cell_data, cell_data), (dataset.point_data, point_data)):
         for name, values in (arrays or {}).items():
-            store[name] = np.asarray(values)
+            if np.size(values):  # PyVista refuses empty arrays of vectors
+                store[name] = np.asarray(values)
     return dataset
 
 
