@@ -67,6 +67,10 @@ class Tract:
         object.__setattr__(self, "points", _points(self.points, self.name))
         object.__setattr__(self, "weight", _weight(self.weight, f"tract {self.name!r}"))
 
+    def to_core(self, number: int) -> _core.Tract:
+        """The tract as the engine has it, with the number by which messages call it."""
+        return _core.Tract(self.points, name=self.name, weight=self.weight, number=number)
+
 
 @dataclass(frozen=True, eq=False)
 class BoundaryCondition:
@@ -190,6 +194,18 @@ class TractSet:
             raise TypeError(f"surface is {quoted(self.surface)}, but must be a SurfaceIdentity or None")
         loops = {text(name, "the name of a loop"): _point(point, name) for name, point in self.loops.items()}
         object.__setattr__(self, "loops", loops)
+
+    def curves_on(self, model: Model) -> list[NDArray[np.float64]]:
+        """Bring the tracts to the surface of a model, as curves (k, 3) on it, mm, such as for pictures.
+
+        Raises
+        ------
+        InvalidOption
+            A tract is too far from the surface.
+        """
+        projector = _core.TractProjector(model.mesh)
+        constraints = projector.make_constraints([tract.to_core(number) for number, tract in enumerate(self.tracts)])
+        return [curve.points for curve in constraints.tracts]
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a `.json` file that people can read and edit; see `pectinate.io.tract_file`.
