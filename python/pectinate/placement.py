@@ -356,8 +356,8 @@ class Placement:
         Parameters
         ----------
         options
-            Of `part` (`tube_radius`, `tracts`, `surface_values`, ...) and of `pectinate.viewer.Page` (`title`, `markers`,
-            `views`, ...).
+            Of `part` (`tube_radius`, `tracts`, `surface_values`, ...) and of `pectinate.viewer.Page` (`title`,
+            `markers`, `views`, ...).
 
         Raises
         ------
