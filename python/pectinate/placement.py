@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
@@ -40,7 +41,7 @@ _OPTION_NAMES = (
     "random_seed",
     "thread_count",
 )
-_PAGE_OPTIONS = {"markers", "notes", "views", "axes", "shown_values", "style"}
+_PAGE_OPTIONS = inspect.signature(Page).parameters.keys() - {"parts"}
 _ENUMERATIONS: dict[str, type[Enum]] = {"method": _core.PlacementMethod, "occupancy": _core.OccupancyModel}
 
 
@@ -342,16 +343,14 @@ class Placement:
         )
         return replace(self.model.part(name, **options), streamlines=drawn)
 
-    def page(self, *, title: str = "", **options: Any) -> Page:
+    def page(self, **options: Any) -> Page:
         """Make an interactive page: one HTML file that needs neither a server nor the network.
 
         Parameters
         ----------
-        title
-            Above the switches.
         options
-            Of `part` (`tube_radius`, `tracts`, `surface_values`, ...) and of `pectinate.viewer.Page` (`markers`,
-            `views`, ...).
+            Of `part` (`tube_radius`, `tracts`, `surface_values`, ...) and of `pectinate.viewer.Page` (`title`,
+            `markers`, `views`, ...).
 
         Raises
         ------
@@ -364,7 +363,7 @@ class Placement:
             f"{statistics.streamline_count:,} streamlines, {self.options['separation_distance']:g} mm apart, mean "
             f"length {statistics.mean_length:.1f} mm"
         ]
-        return Page(self.part(**options), **{"title": title, "notes": notes, **of_page})
+        return Page(self.part(**options), **{"notes": notes, **of_page})
 
     def show(self, **options: Any) -> Page:
         """Show the surface with the streamlines in the browser, to be turned and zoomed; in Jupyter, in the notebook.

@@ -15,7 +15,7 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
-from pectinate.errors import InvalidFile, InvalidOption
+from pectinate.errors import InvalidFile, InvalidOption, MissingDependency
 from pectinate.figure.shading import Style
 from pectinate.figure.views import STANDARD_VIEWS, View
 from pectinate.viewer.parts import Marker, Part
@@ -119,12 +119,20 @@ class Page:
             raise InvalidFile.at(path, f"cannot be written ({error.strerror})", "check the folder") from error
 
     def show(self) -> Page:
-        """Open the page in the browser, from a temporary file; in a notebook only return it, to be displayed there."""
+        """Open the page in the browser, from a temporary file; in a notebook only return it, to be displayed there.
+
+        Raises
+        ------
+        MissingDependency
+            There is no browser.
+        """
         if not _in_notebook():
             with tempfile.NamedTemporaryFile("w", suffix=".html", prefix="pectinate-", delete=False) as file:
                 path = Path(file.name)
             self.save(path)
-            webbrowser.open(path.as_uri())
+            if not webbrowser.open(path.as_uri()):
+                path.unlink()
+                raise MissingDependency("no browser could be opened: save the page as a file, and open that")
         return self
 
 

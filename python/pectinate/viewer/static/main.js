@@ -234,6 +234,7 @@ async function start() {
   viewer.look(0);
   followPointers(canvas, viewer.view, () => viewer.requestDraw());
   window.addEventListener('resize', () => viewer.requestDraw());
+  canvas.addEventListener('webglcontextrestored', () => viewer.requestDraw());
   viewer.draw(screenRatio());
   message.hidden = true;
   window.pectinate = viewer;
