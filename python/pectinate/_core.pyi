@@ -317,6 +317,9 @@ def place_streamlines(
     thread_count: int = ...,
     progress: Callable[[float], bool | None] | None = None,
 ) -> Placement: ...
+
+default_taper_length: float
+
 def make_tubes(
     mesh: SurfaceMesh, placement: Placement, *, radius: float = ..., taper_length: float = ..., side_count: int = ...
 ) -> Tubes: ...

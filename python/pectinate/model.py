@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
 from pectinate import _core
 from pectinate._core import OrientationField, SurfaceMesh
 from pectinate.errors import InvalidField, InvalidMesh
 from pectinate.figure.files import check_picture_path, save_picture
+from pectinate.figure.parts import Lines, Part, Values, named_values
 from pectinate.figure.sheet import draw_sheet
 from pectinate.summary import summarize
 
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from pectinate.io.units import UnitDecision
 
 Location = Literal["triangle", "vertex"]
+
+_TRACT_RADIUS = 0.005
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,6 +202,44 @@ class Model:
         """
         check_picture_path(path)
         return save_picture(draw_sheet((self.mesh.vertices, self.mesh.triangles), **sheet_options), path)
+
+    def part(
+        self,
+        name: str = "",
+        *,
+        tracts: Sequence[ArrayLike] = (),
+        tract_radius: float | None = None,
+        surface_values: Values | None = None,
+        **options: Any,
+    ) -> Part:
+        """Make a part of a sheet of pictures, which may have several, see `pectinate.figure_sheet`.
+
+        Parameters
+        ----------
+        name
+            Of the part.
+        tracts
+            Lines (k, 3), mm, drawn black.
+        tract_radius
+            mm; by default a 200th of the surface's diagonal.
+        surface_values
+            Numbers per triangle or vertex of `mesh`, as in `figure`; several by name.
+        options
+            Of `Part`: `visible`, `surface_color`, `offset`, `rotation`.
+
+        Raises
+        ------
+        InvalidOption
+            A tract is no line, or an option is out of its range.
+        """
+        radius = _TRACT_RADIUS * self.mesh.bounding_box_diagonal if tract_radius is None else tract_radius
+        return Part(
+            name,
+            (self.mesh.vertices, self.mesh.triangles),
+            tracts=Lines.of(tracts, radius) if len(tracts) else None,
+            surface_values=named_values(surface_values),
+            **options,
+        )
 
     def summary(self) -> dict[str, Any]:
         """Everything worth knowing before streamlines are placed, ready for JSON.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from enum import Enum
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,8 @@ from PIL import Image
 from pectinate import _core
 from pectinate.errors import InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
+from pectinate.figure.parts import Lines, Part
+from pectinate.figure.shape import Triangles
 from pectinate.figure.sheet import draw_sheet
 from pectinate.io import load, streamlines
 from pectinate.model import Model
@@ -257,6 +260,45 @@ class Placement:
             `.vtp` without PyVista.
         """
         streamlines.save(self, Path(path), **tube_options)
+
+    def part(
+        self,
+        name: str = "",
+        *,
+        tube_radius: float | None = None,
+        taper_length: float | None = None,
+        side_count: int | None = None,
+        **options: Any,
+    ) -> Part:
+        """Make a part of a sheet of pictures, which may have several, see `pectinate.figure_sheet`.
+
+        Parameters
+        ----------
+        name
+            Of the part.
+        tube_radius, taper_length, side_count
+            As `radius`, `taper_length` and `side_count` of `tubes`.
+        options
+            Of `Model.part`: `tracts`, `surface_values`, `offset`, ...
+
+        Raises
+        ------
+        InvalidOption
+            An option is out of its range.
+        """
+
+        def make_tubes() -> Triangles:
+            tubes = self.tubes(radius=tube_radius, taper_length=taper_length, side_count=side_count)
+            return tubes.vertices, tubes.triangles
+
+        lines = Lines(
+            self.points,
+            self.offsets,
+            self.default_tube_radius() if tube_radius is None else tube_radius,
+            _core.default_taper_length if taper_length is None else taper_length,
+            make_tubes,
+        )
+        return replace(self.model.part(name, **options), streamlines=lines)
 
     def figure(
         self,

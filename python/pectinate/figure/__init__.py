@@ -1,7 +1,10 @@
 """Drawings of surfaces with tubes and values on them, offscreen, and of the disk that a surface is mapped to."""
 
+from pectinate.figure.cells import Cell, figure_sheet
 from pectinate.figure.disk import draw_disk
 from pectinate.figure.lines import line_tubes
+from pectinate.figure.parts import Lines, Marker, Part
+from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import render_view
 from pectinate.figure.shading import Style
 from pectinate.figure.shape import Layer
@@ -11,12 +14,18 @@ from pectinate.figure.views import STANDARD_VIEWS, View, principal_views, standa
 
 __all__ = [
     "STANDARD_VIEWS",
+    "Cell",
     "Layer",
+    "Lines",
+    "Marker",
+    "Part",
+    "PatientAxes",
     "Style",
     "SurfaceValues",
     "View",
     "draw_disk",
     "draw_sheet",
+    "figure_sheet",
     "line_tubes",
     "principal_views",
     "render_view",
