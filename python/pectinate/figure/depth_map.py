@@ -12,10 +12,8 @@ from pectinate.figure.frame import Frame
 from pectinate.figure.offscreen import Canvas, Stage
 from pectinate.figure.shading import blurred_depth
 
-# Cells of a map at most, in all and along a side: they take some 300 MB to draw.
-_MOST_CELLS, _LONGEST_SIDE = 2_000_000, 4096
-# Samples across a cell at most.
-_FINEST = 2
+# Cells of a map at most, in all and along a side: they take some 200 MB to draw.
+_MOST_CELLS, _LONGEST_SIDE = 4_000_000, 4096
 # Cells across the radius of a fold, where folds are so large in pixels.
 _FOLD_CELLS = 8
 
@@ -27,7 +25,7 @@ class DepthMap:
     Attributes
     ----------
     samples
-        (s * h, s * w) float32, mm behind the nearest vertex; infinite where nothing is drawn.
+        (h, w) float32, mm behind the nearest vertex, in the middle of each cell; infinite where nothing is drawn.
     surroundings
         (h, w) float32, mm: mean depth around each cell.
     cell
@@ -59,8 +57,7 @@ class DepthMap:
 
     def depth_at(self, pixels: NDArray[np.float64]) -> NDArray[np.float32]:
         """Depth of what is seen at places (n, 2) in pixels of the picture; infinite where nothing is."""
-        density = self.samples.shape[1] // self.surroundings.shape[1]
-        column, row = np.floor((pixels - self.origin) * density / self.cell).astype(np.int64).T
+        column, row = np.floor((pixels - self.origin) / self.cell).astype(np.int64).T
         height, width = self.samples.shape
         inside = (row >= 0) & (row < height) & (column >= 0) & (column < width)
         depth = np.full(len(pixels), np.inf, dtype=np.float32)
@@ -68,8 +65,8 @@ class DepthMap:
         return depth
 
 
-def draw_depth_map(  # noqa: PLR0913
-    canvas: Canvas, stage: Stage, frame: Frame, points: NDArray[np.float64], *, supersampling: int, fold_size: float
+def draw_depth_map(
+    canvas: Canvas, stage: Stage, frame: Frame, points: NDArray[np.float64], fold_size: float
 ) -> DepthMap:
     """Draw the depth of a frame where there is something to see.
 
@@ -81,8 +78,6 @@ def draw_depth_map(  # noqa: PLR0913
         What to draw on, what, and what of it is seen.
     points : (n, 3) float64
         Every vertex, in the coordinates of the frame's view.
-    supersampling : int
-        Of the picture; the map has no more samples.
     fold_size : float
         Width in mm of the folds that shall be darkened: the size of the surroundings.
     """
@@ -96,12 +91,11 @@ def draw_depth_map(  # noqa: PLR0913
         math.ceil(extent.max() / _LONGEST_SIDE),
     )
     cells = -(-extent // cell)
-    density = min(supersampling, _FINEST)
     middle = (first + 0.5 * cell * cells - 0.5 * np.array(frame.size)) * (1, -1) * frame.mm_per_pixel
-    size = (int(cells[0]) * density, int(cells[1]) * density)
-    _, samples = canvas.draw(stage, size, frame.mm_per_pixel * cell / density, (float(middle[0]), float(middle[1])))
+    size = (int(cells[0]), int(cells[1]))
+    _, samples = canvas.draw(stage, size, frame.mm_per_pixel * cell, (float(middle[0]), float(middle[1])))
     blur = min(max(1, round(radius / cell)), int(cells.max()))
-    return DepthMap(samples, blurred_depth(samples, density, blur), cell, (int(first[0]), int(first[1])))
+    return DepthMap(samples, blurred_depth(samples, blur), cell, (int(first[0]), int(first[1])))
 
 
 def _seen_pixels(frame: Frame, points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

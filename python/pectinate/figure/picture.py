@@ -131,7 +131,7 @@ def draw_frame(  # noqa: PLR0913
         raise InvalidOption(f"supersampling {supersampling}: give a whole number from 1 to {_LARGEST_SUPERSAMPLING}")
     stage = canvas.load(patches(drawing, frame.view, frame.centre, style))
     fold_size = FOLD_SIZE * drawing.diagonal
-    depth_map = draw_depth_map(canvas, stage, frame, drawing.points, supersampling=supersampling, fold_size=fold_size)
+    depth_map = draw_depth_map(canvas, stage, frame, drawing.points, fold_size)
     darkness = style.fold_darkness * (VALUE_SHADE if drawing.shows_values else 1.0)
     width, height = frame.size
     picture = np.empty((height, width, 4 if transparent else 3), dtype=np.uint8)

@@ -136,15 +136,13 @@ def shaded(color: ArrayLike, brightness: NDArray[np.float64], highlight: ArrayLi
     return np.asarray(np.clip(lit, 0.0, 1.0))
 
 
-def blurred_depth(depth: NDArray[np.float32], block: int, radius: int) -> NDArray[np.float32]:
+def blurred_depth(depth: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
     """Mean of a depth map around each pixel.
 
     Parameters
     ----------
-    depth : (block * h, block * w) float32
+    depth : (h, w) float32
         Depth in mm; infinite where there is nothing, which takes no part in the mean.
-    block : int
-        Samples across a pixel.
     radius : int
         Half width of the blur in pixels.
 
@@ -153,7 +151,7 @@ def blurred_depth(depth: NDArray[np.float32], block: int, radius: int) -> NDArra
     (h, w) float32
     """
     seen = np.isfinite(depth)
-    weights, sums = box_downsample(seen, block), box_downsample(np.where(seen, depth, np.float32(0)), block)
+    weights, sums = seen.astype(np.float32), np.where(seen, depth, np.float32(0))
     for _ in range(3):
         weights, sums = _box_blur(weights, radius), _box_blur(sums, radius)
     return np.asarray(sums / np.maximum(weights, np.finfo(np.float32).tiny))
