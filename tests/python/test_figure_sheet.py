@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import itertools
+from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,11 +17,11 @@ from PIL import Image
 
 from meshes import grid
 from pectinate import Cell, Marker, Part, PatientAxes, datasets, figure_sheet, place_streamlines
-from pectinate.errors import InvalidMesh, InvalidOption
+from pectinate.errors import InvalidFile, InvalidMesh, InvalidOption
 from pectinate.figure import Lines, Style, SurfaceValues, View, draw_sheet, render_view, standard_view
 from pectinate.figure.frame import Frame
 from pectinate.figure.markers import place_discs
-from pectinate.figure.offscreen import open_canvas
+from pectinate.figure.offscreen import Canvas, Stage, open_canvas
 from pectinate.figure.picture import draw_frame
 from pectinate.figure.shape import Drawing, check_drawing
 
@@ -54,6 +56,10 @@ def bumpy_drawing() -> Drawing:
     return check_drawing(surface, (np.asarray(tube.vertices) + np.array([5, -9, -7]), tube.faces), (), None, Style())
 
 
+def covered_share(picture: NDArray[np.uint8]) -> float:
+    return float((picture != 255).any(axis=2).mean())
+
+
 @drawn
 @pytest.mark.parametrize("transparent", [False, True])
 @pytest.mark.parametrize(("mm_per_pixel", "tile"), [(0.12, 77), (0.03, 500)])
@@ -75,6 +81,27 @@ def test_tiles_do_not_show(transparent: bool, mm_per_pixel: float, tile: int) ->
 
 
 @drawn
+def test_no_more_than_a_tile_is_drawn_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    sizes = []
+    draw = Canvas.draw
+
+    def counted(canvas: Canvas, stage: Stage, size: tuple[int, int], *rest: Any) -> Any:
+        sizes.append(size)
+        return draw(canvas, stage, size, *rest)
+
+    monkeypatch.setattr(Canvas, "draw", counted)
+    assert render_view(sphere(), size=(700, 500), supersampling=6).shape == (500, 700, 3)
+    assert max(max(size) for size in sizes) <= 2048
+    # The tiles, and the depth map, which is coarse.
+    assert sum(width * height for width, height in sizes) <= 4200 * 3000 + 700 * 500
+    sizes.clear()
+    draw_wide = render_view(sphere(), size=(30_000, 2), mm_per_pixel=0.001, supersampling=1)
+    assert draw_wide.shape == (2, 30_000, 3)
+    assert covered_share(draw_wide) == pytest.approx(20 / 30, abs=1e-3)
+    assert max(max(size) for size in sizes) <= 4096
+
+
+@drawn
 @pytest.mark.parametrize("mm_per_pixel", [0.03, 0.12, 0.25])
 def test_folds_are_as_dark_at_any_resolution(mm_per_pixel: float) -> None:
     size = (round(24 / mm_per_pixel), round(24 / mm_per_pixel))
@@ -90,7 +117,7 @@ def test_folds_are_as_dark_at_any_resolution(mm_per_pixel: float) -> None:
 
 
 @drawn
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(st.integers(0, 2**31))
 def test_a_vertex_is_drawn_where_the_frame_says(seed: int) -> None:
     random = np.random.default_rng(seed)
@@ -295,6 +322,17 @@ def test_files_have_their_dots_per_inch(tmp_path: Path, dpi: float) -> None:
         text = (tmp_path / "sheet.pdf").read_bytes()
         box = text[text.index(b"/MediaBox") :].split(b"[")[1].split(b"]")[0].split()
         assert [float(x) for x in box] == pytest.approx([0, 0, SIZE[0] * 72 / dpi, SIZE[1] * 72 / dpi], abs=0.01)
+    figure_sheet(Cell(cube(10)), tmp_path / "sheet.pdf", size=SIZE)
+    text = (tmp_path / "sheet.pdf").read_bytes()
+    with Image.open(BytesIO(text[text.index(b"\xff\xd8") :])) as page:
+        assert np.abs(np.asarray(page).astype(int) - np.asarray(sheet)).mean() < 1
+
+
+@drawn
+def test_a_kind_of_file_that_cannot_be_transparent_is_refused(tmp_path: Path) -> None:
+    figure_sheet(Cell(cube(10)), tmp_path / "sheet.jpg", size=SIZE)
+    with pytest.raises(InvalidFile, match=r"\.png"):
+        figure_sheet(Cell(cube(10)), tmp_path / "sheet.jpg", size=SIZE, transparent=True)
 
 
 @given(st.integers(0, 2**31), st.sampled_from(["left", "posterior", "superior", None]))

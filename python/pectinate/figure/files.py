@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
 from pathlib import Path
-from types import MappingProxyType
 from typing import Any
 
 from PIL import Image
@@ -16,8 +14,7 @@ from pectinate.errors import InvalidFile, InvalidOption
 DOTS_PER_INCH = 300.0
 """Pixels per inch that files tell, if nothing else is wished."""
 
-# For JPEG, which is also within PDF; other kinds ignore it.
-_BEST_QUALITY: Mapping[str, Any] = MappingProxyType({"quality": 95, "subsampling": 0})
+_JPEG_QUALITY = {"quality": 95, "subsampling": 0}
 
 
 def check_picture_path(path: str | os.PathLike[str] | None) -> None:
@@ -49,9 +46,16 @@ def save_picture(
     if not (math.isfinite(dpi) and dpi > 0):
         raise InvalidOption(f"dpi {dpi}: give a number above 0")
     if path is not None:
-        options: dict[str, Any] = {"resolution": dpi} if Path(path).suffix.lower() == ".pdf" else {"dpi": (dpi, dpi)}
         try:
-            picture.save(path, **options, **_BEST_QUALITY)
-        except OSError as error:
-            raise InvalidFile.at(path, f"cannot be written ({error.strerror or error})", "check the folder") from error
+            picture.save(path, **_save_options(Path(path).suffix.lower(), dpi))
+        except (OSError, ValueError) as error:
+            what = f"cannot be written ({getattr(error, 'strerror', None) or error})"
+            raise InvalidFile.at(path, what, "check the folder, or use the suffix .png") from error
     return picture
+
+
+def _save_options(suffix: str, dpi: float) -> dict[str, Any]:
+    if suffix == ".pdf":
+        # The page holds a JPEG; where it is transparent, a JPEG 2000 without loss.
+        return {"resolution": dpi, **_JPEG_QUALITY}
+    return {"dpi": (dpi, dpi), **(_JPEG_QUALITY if suffix in {".jpg", ".jpeg"} else {})}
