@@ -202,7 +202,7 @@ class FieldEditor:
     def _adopt(self, tracts: dict[int, Tract], conditions: dict[int, BoundaryCondition]) -> None:
         """Bring tracts and conditions to the surface, and keep them if that succeeds."""
         self._constraints = self._projector.make_constraints(
-            [_core.Tract(tract.points, name=tract.name, weight=tract.weight) for tract in tracts.values()],
+            [tract.to_core() for tract in tracts.values()],
             core_conditions(self.model, tuple(conditions.values())),
             **self._limits,
         )

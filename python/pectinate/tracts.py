@@ -57,6 +57,10 @@ class Tract:
         object.__setattr__(self, "points", _points(self.points, self.name))
         _check_weight(self.weight, f"tract {self.name!r}")
 
+    def to_core(self) -> _core.Tract:
+        """The tract as the engine has it."""
+        return _core.Tract(self.points, name=self.name, weight=self.weight)
+
 
 @dataclass(frozen=True, eq=False)
 class BoundaryCondition:
@@ -168,6 +172,18 @@ class TractSet:
         object.__setattr__(self, "boundary", tuple(self.boundary))
         loops = {name: _point(point, name) for name, point in self.loops.items()}
         object.__setattr__(self, "loops", loops)
+
+    def curves_on(self, model: Model) -> list[NDArray[np.float64]]:
+        """Bring the tracts to the surface of a model, as curves (k, 3) on it, mm, such as for pictures.
+
+        Raises
+        ------
+        InvalidOption
+            A tract is too far from the surface.
+        """
+        projector = _core.TractProjector(model.mesh)
+        constraints = projector.make_constraints([tract.to_core() for tract in self.tracts])
+        return [curve.points for curve in constraints.tracts]
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a `.json` file that people can read and edit; see `pectinate.io.tract_file`.

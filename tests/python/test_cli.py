@@ -49,7 +49,7 @@ def run_json(capsys: pytest.CaptureFixture[str], *words: object) -> dict:
 
 
 def test_place_writes_every_format_and_reports_it(square, tmp_path, capsys):
-    files = [tmp_path / f"r{suffix}" for suffix in (".npz", ".vtp", ".ply", ".obj", ".glb")]
+    files = [tmp_path / f"r{suffix}" for suffix in (".npz", ".vtp", ".ply", ".obj", ".glb", ".html")]
     report = run_json(capsys, "place", square, *(word for path in files for word in ("--out", path)))
     assert report["files"] == [str(path) for path in files]
     assert all(path.stat().st_size > 0 for path in files)

@@ -46,6 +46,11 @@ def check_figure(arguments: argparse.Namespace) -> None:
     if arguments.figure is not None:
         kinds = Image.registered_extensions()
         check_suffixes("--figure", [arguments.figure], {suffix for suffix in kinds if kinds[suffix] in Image.SAVE})
+    check_views(arguments)
+
+
+def check_views(arguments: argparse.Namespace) -> None:
+    """Refuse an unknown view."""
     for view in getattr(arguments, "views", None) or ():
         resolve_view(view, np.eye(3))
 

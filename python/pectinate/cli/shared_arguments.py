@@ -35,6 +35,11 @@ def add_surface(parser: argparse.ArgumentParser) -> None:
 def add_input(parser: argparse.ArgumentParser) -> None:
     """The file of a surface and its field."""
     add_surface(parser)
+    add_field(parser)
+
+
+def add_field(parser: argparse.ArgumentParser) -> None:
+    """Where the field is."""
     parser.add_argument("--field", metavar="NAME|FILE", help="name of the array of fibres, or a file that holds them")
 
 

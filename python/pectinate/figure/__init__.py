@@ -6,6 +6,7 @@ from pectinate.figure.lines import line_tubes
 from pectinate.figure.parts import Lines, Marker, Part
 from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import render_view
+from pectinate.figure.plots import draw_lengths, draw_spacing
 from pectinate.figure.shading import Style
 from pectinate.figure.shape import Layer
 from pectinate.figure.sheet import draw_sheet
@@ -24,7 +25,9 @@ __all__ = [
     "SurfaceValues",
     "View",
     "draw_disk",
+    "draw_lengths",
     "draw_sheet",
+    "draw_spacing",
     "figure_sheet",
     "line_tubes",
     "principal_views",

@@ -39,6 +39,12 @@ class Lines:
     make_tubes : callable, optional
         Makes the vertices and triangles of the tubes for pictures, when they are needed; by default tubes with round
         ends.
+
+    Raises
+    ------
+    InvalidOption
+        A point is not finite, a line has fewer than two, the offsets do not part the points, or a length is out of its
+        range.
     """
 
     points: NDArray[np.float64]
@@ -52,6 +58,13 @@ class Lines:
             raise InvalidOption(f"tube radius is {self.radius}, but must be positive and finite")
         if not (np.isfinite(self.taper_length) and self.taper_length >= 0):
             raise InvalidOption(f"taper_length is {self.taper_length}, but must be finite and not negative")
+        if self.points.ndim != 2 or self.points.shape[1] != 3 or not np.isfinite(self.points).all():  # noqa: PLR2004
+            raise InvalidOption(f"lines: points of shape {self.points.shape}; give finite numbers, (N, 3)")
+        ends = (0, len(self.points))
+        if self.offsets.ndim != 1 or not len(self.offsets) or (self.offsets[0], self.offsets[-1]) != ends:
+            raise InvalidOption(f"lines: offsets must go from 0 to the number of points, {len(self.points)}")
+        if (np.diff(self.offsets) < _FEWEST_POINTS).any():
+            raise InvalidOption("lines: one has fewer than two points; remove it")
 
     @classmethod
     def of(cls, lines: Sequence[ArrayLike], radius: float) -> Lines:
@@ -60,7 +73,7 @@ class Lines:
         Raises
         ------
         InvalidOption
-            A line is no array (k, 3) of finite numbers with at least two rows, or the radius is not above 0.
+            A line is no array (k, 3), or breaks another rule of `Lines`.
         """
         arrays = [_line(index, line) for index, line in enumerate(lines)]
         offsets = np.cumsum([0] + [len(line) for line in arrays])
@@ -198,10 +211,8 @@ def nearest_parts(markers: Sequence[Marker], parts: Sequence[Part]) -> NDArray[n
 
 def _line(index: int, line: ArrayLike) -> NDArray[np.float64]:
     points = np.asarray(line, dtype=np.float64)
-    if points.ndim != 2 or points.shape[1] != 3 or len(points) < _FEWEST_POINTS:  # noqa: PLR2004
-        raise InvalidOption(f"line {index}: points of shape {points.shape}; give an array (n, 3) of at least two")
-    if not np.isfinite(points).all():
-        raise InvalidOption(f"line {index}: a point is not finite; remove it")
+    if points.ndim != 2 or points.shape[1] != 3:  # noqa: PLR2004
+        raise InvalidOption(f"line {index}: points of shape {points.shape}; give an array (n, 3)")
     return points
 
 
