@@ -13,7 +13,8 @@ from pectinate.figure.writing import Rgb, font, lay_on
 RADIUS = 0.027
 """Of a marker's disc, as a share of the height of a picture."""
 
-_RIM = 0.13
+# Widths of a disc's rim and of what is added to its letters on each side, in radii.
+_RIM, _BOLD = 0.13, 0.03
 # Least distance of two discs, and how far from its place a disc may go and in what steps; in radii.
 _SPACING, _FARTHEST, _STEP = 2.2, 14.0, 0.25
 _DIRECTIONS = 32
@@ -115,7 +116,8 @@ def _draw_disc(image: Image.Image, place: NDArray[np.float64], text: str, radius
         height = _FINE * 1.25 * radius
         width = canvas.textlength(text, font(height))
         height *= min(1.0, 1.45 * _FINE * radius / max(width, 1.0))
-        canvas.text(tuple(_FINE * middle), text, (*_INK, 255), font(height), anchor="mm")
+        bold = round(_BOLD * _FINE * radius)
+        canvas.text(tuple(_FINE * middle), text, (*_INK, 255), font(height), anchor="mm", stroke_width=bold)
 
     _stamp(image, place - radius, place + radius, draw)
 
