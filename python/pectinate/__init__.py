@@ -13,6 +13,7 @@ from importlib.metadata import version
 from pectinate import datasets, errors, viewer
 from pectinate._core import OrientationField, SurfaceMesh, Tubes
 from pectinate.comparison import Comparison, add_noise, compare
+from pectinate.figure import Cell, Marker, Part, PatientAxes, figure_sheet
 from pectinate.interpolated_field import InterpolatedField
 from pectinate.interpolation import FieldEditor, interpolate
 from pectinate.io import load, save_surface
@@ -27,12 +28,16 @@ from pectinate.tracts import BoundaryCondition, SurfaceIdentity, Tract, TractSet
 
 __all__ = [
     "BoundaryCondition",
+    "Cell",
     "Comparison",
     "DiskMap",
     "FieldEditor",
     "InterpolatedField",
+    "Marker",
     "Model",
     "OrientationField",
+    "Part",
+    "PatientAxes",
     "Placement",
     "PlacementStatistics",
     "SmoothedField",
@@ -46,6 +51,7 @@ __all__ = [
     "compare",
     "datasets",
     "errors",
+    "figure_sheet",
     "find_loop",
     "interpolate",
     "load",

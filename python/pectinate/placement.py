@@ -19,13 +19,15 @@ from pectinate import _core
 from pectinate.choices import member
 from pectinate.errors import InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
+from pectinate.figure.parts import Lines, Part
 from pectinate.figure.plots import draw_lengths
+from pectinate.figure.shape import Triangles
 from pectinate.figure.sheet import draw_sheet
 from pectinate.io import lines, load, streamlines
 from pectinate.io.gltf import make_scene
 from pectinate.model import Model
 from pectinate.statistics import PlacementStatistics
-from pectinate.viewer import Lines, Page, Part
+from pectinate.viewer import Page
 
 _OPTION_NAMES = (
     "separation_distance",
@@ -317,29 +319,43 @@ class Placement:
         return draw_lengths([self.lengths], path, **options)
 
     def part(
-        self, name: str = "", *, tube_radius: float | None = None, taper_length: float | None = None, **options: Any
+        self,
+        name: str = "",
+        *,
+        tube_radius: float | None = None,
+        taper_length: float | None = None,
+        side_count: int | None = None,
+        **options: Any,
     ) -> Part:
-        """Make a part of an interactive page, which may have several, see `pectinate.viewer.Page`.
+        """Make a part of a page or of a sheet of pictures, which may have several.
+
+        See `pectinate.viewer.Page` and `pectinate.figure_sheet`.
 
         Parameters
         ----------
         name
-            Beside its switch.
-        tube_radius, taper_length
-            As `radius` and `taper_length` of `tubes`; the page has a slider for the radius.
+            Of the part.
+        tube_radius, taper_length, side_count
+            As `radius`, `taper_length` and `side_count` of `tubes`; a page has a slider for the radius.
         options
-            Of `Model.part`: `tracts`, `surface_values`, `visible`, ...
+            Of `Model.part`: `tracts`, `surface_values`, `offset`, ...
 
         Raises
         ------
         InvalidOption
             An option is out of its range.
         """
+
+        def make_tubes() -> Triangles:
+            tubes = self.tubes(radius=tube_radius, taper_length=taper_length, side_count=side_count)
+            return tubes.vertices, tubes.triangles
+
         drawn = Lines(
             self.points,
             self.offsets,
             self.default_tube_radius() if tube_radius is None else tube_radius,
             _core.default_taper_length if taper_length is None else taper_length,
+            make_tubes,
         )
         return replace(self.model.part(name, **options), streamlines=drawn)
 

@@ -318,3 +318,24 @@ def test_view_refuses_before_it_works(tmp_path: Path, capsys: pytest.CaptureFixt
     ):
         assert main(["view", *words]) == code
         assert text in capsys.readouterr().err
+
+
+def test_parts_of_a_page_stand_where_they_are_placed_and_have_their_colors() -> None:
+    vertices, triangles = meshes.grid()
+    turn = ((0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    lines = Lines.of([vertices[:3]], 0.1)
+    placed = Part(
+        "moved", (vertices, triangles), tracts=lines, surface_color=(1, 0, 0), offset=(5, 6, 7), rotation=turn
+    )
+    by_hand = vertices @ np.array(turn).T + [5, 6, 7]
+    other = Part("by hand", (by_hand, triangles), tracts=Lines.of([by_hand[:3]], 0.1))
+    x, y, z = vertices[4].tolist()
+    shown = description(Page(placed, markers=[Marker((x, y, z), "1")]))
+    expected = description(Page(other))
+    (part,), (same,) = shown["parts"], expected["parts"]
+    assert part["surface"] == same["surface"]
+    assert part["tracts"] == same["tracts"]
+    assert part["surface_color"] == [1, 0, 0]
+    assert same["surface_color"] == list(pectinate.figure.Style().surface_color)
+    assert shown["markers"][0]["position"] == pytest.approx(by_hand[4].tolist())
+    assert shown["views"] == expected["views"]
