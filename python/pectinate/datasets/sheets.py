@@ -23,6 +23,8 @@ _FIBRE_VIEWS: Sequence[str | View] = ("anterior", "posterior", _RIGHT_SUPERIOR)
 _TRACT_VIEWS = ("anterior", "posterior")
 _PICTURE_SIZE = (900, 800)  # pixels
 _TRACT_RADIUS = 0.5  # mm
+#: How far along a tract its number stands; the next share if it is not seen there.
+_MARKED_SHARES = (0.5, 0.7, 0.3, 0.85, 0.15)
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,13 +48,12 @@ class AtrialFibres:
         return self.made.model.part(name, tracts=self.curves, tract_radius=_TRACT_RADIUS, **options)
 
     def markers(self) -> list[Marker]:
-        """The number of its row in the middle of a tract, once for all tracts of one name."""
+        """The number of its row on a tract, once for all tracts of one name."""
         groups: dict[tuple[str, str], list[NDArray[np.float64]]] = {}
         for tract, curve in zip(self.made.tracts.tracts, self.curves, strict=True):
             if tract.label:
                 groups.setdefault((tract.label, tract.name), []).append(curve)
-        middles = {key: curves[len(curves) // 2] for key, curves in groups.items()}
-        return [Marker(_middle(curve), label) for (label, _), curve in middles.items()]
+        return [_marker(label, curves) for (label, _), curves in groups.items()]
 
 
 #: Chambers by name, per layer.
@@ -99,8 +100,15 @@ def atria_page(layers: AtrialLayers) -> Page:
     return Page(parts, markers=markers, title="Fibres of the atria", notes=notes)
 
 
-def _middle(curve: NDArray[np.float64]) -> tuple[float, float, float]:
-    x, y, z = curve[len(curve) // 2].tolist()
+def _marker(label: str, curves: list[NDArray[np.float64]]) -> Marker:
+    """A marker on the curve in the middle, or where else on the curves it is seen."""
+    middle_first = sorted(range(len(curves)), key=lambda i: abs(i - len(curves) // 2))
+    places = [_at(curves[i], share) for i in middle_first for share in _MARKED_SHARES]
+    return Marker(places[0], label, places[1:])
+
+
+def _at(curve: NDArray[np.float64], share: float) -> tuple[float, float, float]:
+    x, y, z = curve[int(share * len(curve))].tolist()
     return x, y, z
 
 

@@ -18,7 +18,7 @@ from pectinate.figure.frame import Frame, fitting_scale, middle
 from pectinate.figure.layout import Layout
 from pectinate.figure.markers import RADIUS, draw_markers
 from pectinate.figure.offscreen import open_canvas
-from pectinate.figure.parts import Marker, Part, nearest_parts, three_numbers
+from pectinate.figure.parts import Marker, Part, nearest_parts, normal_at, three_numbers
 from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import Drawn, draw_frame
 from pectinate.figure.scale_bar import draw_bar
@@ -262,12 +262,15 @@ def _mark(image: Image.Image, drawn: Drawn, picture: _Picture, hidden_depth: flo
     markers = picture.cell.markers
     if not markers:
         return
-    places = np.stack(
-        [
-            picture.parts[part].placed([marker.position])[0]
-            for marker, part in zip(markers, nearest_parts(markers, picture.parts), strict=True)
-        ]
-    )
-    seen = drawn.sees(places, hidden_depth)
-    texts = [marker.text for marker, visible in zip(markers, seen, strict=True) if visible]
-    draw_markers(image, drawn.frame.pixels(places[seen]), texts, RADIUS * image.height)
+    towards_viewer = picture.view.rotation()[2]
+    texts, anchors = [], []
+    for marker, index in zip(markers, nearest_parts(markers, picture.parts), strict=True):
+        part, places = picture.parts[index], [marker.position, *marker.alternatives]
+        shown = part.placed(places)
+        outside = np.array([normal_at(part, place) @ towards_viewer > 0 for place in places])
+        seen = np.flatnonzero(drawn.sees(shown, hidden_depth) & outside)
+        if len(seen):
+            texts.append(marker.text)
+            anchors.append(shown[seen[0]])
+    if texts:
+        draw_markers(image, drawn.frame.pixels(np.stack(anchors)), texts, RADIUS * image.height)

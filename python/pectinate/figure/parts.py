@@ -152,7 +152,7 @@ class Part:
 
 @dataclass(frozen=True)
 class Marker:
-    """A label in a circle at a place on a surface; hidden where the surface hides its place.
+    """A label in a circle at a place on a surface; hidden where something hides its place, or only the inside is seen.
 
     It belongs to the part whose surface is nearest, and moves with it.
 
@@ -162,18 +162,23 @@ class Marker:
         mm, in the coordinates of the part.
     text : str
         A number or a short word.
+    alternatives : sequence of tuples of 3 float
+        Places on the same part where a picture shows the marker instead, the first that is seen, if its position is
+        not. Pages have no use for them, because they can be turned.
 
     Raises
     ------
     InvalidOption
-        The position is not three finite numbers.
+        A place is not three finite numbers.
     """
 
     position: tuple[float, float, float]
     text: str
+    alternatives: Sequence[tuple[float, float, float]] = ()
 
     def __post_init__(self) -> None:
-        three_numbers(self.position, f"marker {self.text!r}: position")
+        for place in (self.position, *self.alternatives):
+            three_numbers(place, f"marker {self.text!r}: position")
 
 
 def three_numbers(given: ArrayLike, what: str) -> NDArray[np.float64]:
@@ -207,6 +212,15 @@ def nearest_parts(markers: Sequence[Marker], parts: Sequence[Part]) -> NDArray[n
         np.argmin([np.linalg.norm(points - marker.position, axis=1).min() for points in vertices]) for marker in markers
     ]
     return np.array(nearest, dtype=np.int64)
+
+
+def normal_at(part: Part, position: ArrayLike) -> NDArray[np.float64]:
+    """Outward normal, (3,) as the part is shown, of any length, of its surface at the vertex nearest to a place."""
+    vertices, triangles = np.asarray(part.surface[0], dtype=np.float64), np.asarray(part.surface[1])
+    used = np.unique(triangles)
+    nearest = used[np.linalg.norm(vertices[used] - position, axis=1).argmin()]
+    a, b, c = np.moveaxis(vertices[triangles[(triangles == nearest).any(axis=1)]], 1, 0)
+    return np.asarray(np.asarray(part.rotation) @ np.cross(b - a, c - a).sum(axis=0))
 
 
 def _line(index: int, line: ArrayLike) -> NDArray[np.float64]:
