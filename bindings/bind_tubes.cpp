@@ -9,11 +9,14 @@ void bind_tubes(py::module_& module) {
   py::class_<Tubes>(
       module, "Tubes",
       "Closed tubes, one per streamline: vertices (N, 3) float64, triangles (M, 3) int32, counter-clockwise seen from "
-      "outside; vertex_offsets and triangle_offsets (n + 1,) int64 part them by streamline.")
+      "outside; vertex_offsets and triangle_offsets (n + 1,) int64 part them by streamline; vertex_points (N,) "
+      "float64: "
+      "the point of the placement that each vertex is at, and the share of the way to the next one.")
       .def_property_readonly("vertices", viewed<Tubes>(&Tubes::vertices))
       .def_property_readonly("triangles", viewed<Tubes>(&Tubes::triangles))
       .def_property_readonly("vertex_offsets", viewed<Tubes>(&Tubes::vertex_offsets))
-      .def_property_readonly("triangle_offsets", viewed<Tubes>(&Tubes::triangle_offsets));
+      .def_property_readonly("triangle_offsets", viewed<Tubes>(&Tubes::triangle_offsets))
+      .def_property_readonly("vertex_points", viewed<Tubes>(&Tubes::vertex_points));
   const TubeOptions defaults;
   module.attr("default_taper_length") = defaults.taper_length;
   module.def(

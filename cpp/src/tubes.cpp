@@ -24,11 +24,13 @@ constexpr double least_ring_spacing = 0.1;
 struct Station {
   Vector place, tangent, normal;  // normal: of the surface
   double arc;
+  double point;
 };
 
 struct PolylinePoint {
   Vector place, normal;
   double arc;
+  double point;  // as Tubes::vertex_points
 };
 
 void check(const TubeOptions& options) {
@@ -64,9 +66,14 @@ std::vector<PolylinePoint> polyline(const SurfaceMesh& mesh, const Placement& pl
     // Neighbours of a surface that cannot be oriented may disagree on their side.
     const Vector normal = before.dot(after) < 0 ? Vector(before - after) : Vector(before + after);
     const double arc = p == first ? 0 : points.back().arc + (place - points.back().place).norm();
-    points.push_back({place, normal, arc});
+    points.push_back({place, normal, arc, static_cast<double>(p)});
   }
   return points;
+}
+
+PolylinePoint between(const PolylinePoint& a, const PolylinePoint& b, double w) {
+  return {(1 - w) * a.place + w * b.place, (1 - w) * a.normal + w * b.normal, (1 - w) * a.arc + w * b.arc,
+          (1 - w) * a.point + w * b.point};
 }
 
 /// Fills long segments so that the taper is followed, and leaves out points too close for rings. The two ends stay.
@@ -80,11 +87,7 @@ std::vector<PolylinePoint> resample(const std::vector<PolylinePoint>& points, co
     if (!is_last && (points[p].arc - kept.back().arc < shortest || length - points[p].arc < shortest)) continue;
     const auto from = kept.back();
     const auto pieces = static_cast<int>(std::ceil((points[p].arc - from.arc) / longest - 1e-9));
-    for (int k = 1; k < pieces; ++k) {
-      const double w = static_cast<double>(k) / pieces;
-      kept.push_back({(1 - w) * from.place + w * points[p].place, (1 - w) * from.normal + w * points[p].normal,
-                      (1 - w) * from.arc + w * points[p].arc});
-    }
+    for (int k = 1; k < pieces; ++k) kept.push_back(between(from, points[p], static_cast<double>(k) / pieces));
     kept.push_back(points[p]);
   }
   return kept;
@@ -104,7 +107,7 @@ std::vector<Station> stations(const std::vector<PolylinePoint>& points) {
     if (normal.norm() < 1e-6 * points[p].normal.norm() || normal.norm() == 0) normal = tangent.unitOrthogonal();
     normal.normalize();
     if (!result.empty() && normal.dot(result.back().normal) < 0) normal = -normal;
-    result.push_back({points[p].place, tangent, normal, points[p].arc});
+    result.push_back({points[p].place, tangent, normal, points[p].arc, points[p].point});
   }
   return result;
 }
@@ -117,21 +120,22 @@ class TubeBuilder {
   void add(const std::vector<Station>& stations) {
     const double length = stations.back().arc;
     const bool blunt = options_.taper_length == 0;
-    const auto start = add_vertex(stations.front().place);
+    const auto start = add_vertex(stations.front().place, stations.front().point);
     std::int32_t ring = -1;
     for (std::size_t i = blunt ? 0 : 1; i < stations.size() - (blunt ? 0 : 1); ++i) {
       const auto next = add_ring(stations[i], tube_radius(options_, stations[i].arc, length));
       ring < 0 ? close(start, next, true) : join(ring, next);
       ring = next;
     }
-    close(add_vertex(stations.back().place), ring, false);
+    close(add_vertex(stations.back().place, stations.back().point), ring, false);
     tubes_.vertex_offsets.push_back(static_cast<std::int64_t>(tubes_.vertices.size()));
     tubes_.triangle_offsets.push_back(static_cast<std::int64_t>(tubes_.triangles.size()));
   }
 
  private:
-  std::int32_t add_vertex(const Vector& place) {
+  std::int32_t add_vertex(const Vector& place, double point) {
     tubes_.vertices.push_back(detail::vec3(place));
+    tubes_.vertex_points.push_back(point);
     return static_cast<std::int32_t>(tubes_.vertices.size()) - 1;
   }
 
@@ -140,7 +144,7 @@ class TubeBuilder {
     const Vector side = station.tangent.cross(station.normal);
     for (int k = 0; k < options_.side_count; ++k) {
       const double angle = 2 * std::numbers::pi * k / options_.side_count;
-      add_vertex(station.place + radius * (std::cos(angle) * station.normal + std::sin(angle) * side));
+      add_vertex(station.place + radius * (std::cos(angle) * station.normal + std::sin(angle) * side), station.point);
     }
     return first;
   }

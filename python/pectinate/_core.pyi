@@ -240,6 +240,7 @@ class Tubes:
     triangles: _Ints
     vertex_offsets: _Longs
     triangle_offsets: _Longs
+    vertex_points: _Floats
 
 class NamedLoop:
     name: str

@@ -19,10 +19,12 @@ from pectinate import _core
 from pectinate.choices import member
 from pectinate.errors import InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
-from pectinate.figure.parts import Lines, Part
+from pectinate.figure.parts import Lines, Part, TubeMesh, Values, named_values, values_at
 from pectinate.figure.plots import draw_lengths
-from pectinate.figure.shape import Triangles
+from pectinate.figure.shading import Style
+from pectinate.figure.shape import Layer
 from pectinate.figure.sheet import draw_sheet
+from pectinate.figure.values import SurfaceValues
 from pectinate.io import lines, load, streamlines
 from pectinate.io.gltf import make_scene
 from pectinate.model import Model
@@ -325,6 +327,7 @@ class Placement:
         tube_radius: float | None = None,
         taper_length: float | None = None,
         side_count: int | None = None,
+        tube_values: Values | None = None,
         **options: Any,
     ) -> Part:
         """Make a part of a page or of a sheet of pictures, which may have several.
@@ -337,6 +340,8 @@ class Placement:
             Of the part.
         tube_radius, taper_length, side_count
             As `radius`, `taper_length` and `side_count` of `tubes`; a page has a slider for the radius.
+        tube_values
+            Numbers that colour the tubes, as in `figure`; several by name.
         options
             Of `Model.part`: `tracts`, `surface_values`, `offset`, ...
 
@@ -346,9 +351,8 @@ class Placement:
             An option is out of its range.
         """
 
-        def make_tubes() -> Triangles:
-            tubes = self.tubes(radius=tube_radius, taper_length=taper_length, side_count=side_count)
-            return tubes.vertices, tubes.triangles
+        def make_tubes() -> TubeMesh:
+            return self.tubes(radius=tube_radius, taper_length=taper_length, side_count=side_count)
 
         drawn = Lines(
             self.points,
@@ -356,6 +360,7 @@ class Placement:
             self.default_tube_radius() if tube_radius is None else tube_radius,
             _core.default_taper_length if taper_length is None else taper_length,
             make_tubes,
+            {name: self._at_points(values) for name, values in named_values(tube_values).items()},
         )
         return replace(self.model.part(name, **options), streamlines=drawn)
 
@@ -403,6 +408,7 @@ class Placement:
         tube_radius: float | None = None,
         taper_length: float | None = None,
         side_count: int | None = None,
+        tube_values: SurfaceValues | ArrayLike | None = None,
         **sheet_options: Any,
     ) -> Image.Image:
         """Draw the surface with the streamlines as tubes, in one or several views.
@@ -413,6 +419,9 @@ class Placement:
             Where to write the picture; by default nowhere.
         tube_radius, taper_length, side_count
             As `radius`, `taper_length` and `side_count` of `tubes`.
+        tube_values
+            Numbers that colour the tubes, per triangle or vertex of `mesh`, or per point of the streamlines: those at
+            the points, interpolated between vertices and along the tubes.
         sheet_options
             Of `pectinate.figure.draw_sheet`: `views`, `size`, `surface_values` (per triangle or vertex of `mesh`), ...
 
@@ -429,5 +438,20 @@ class Placement:
         """
         check_picture_path(path)
         tubes = self.tubes(radius=tube_radius, taper_length=taper_length, side_count=side_count)
-        surface = (self.mesh.vertices, self.mesh.triangles)
-        return save_picture(draw_sheet(surface, (tubes.vertices, tubes.triangles), **sheet_options), path)
+        surface, drawn = (self.mesh.vertices, self.mesh.triangles), (tubes.vertices, tubes.triangles)
+        if tube_values is None:
+            return save_picture(draw_sheet(surface, drawn, **sheet_options), path)
+        numbers = values_at(self._at_points(tube_values), tubes.vertex_points)
+        layer = Layer(drawn, sheet_options.get("style", Style()).tube_color, numbers)
+        sheet_options["layers"] = [layer, *sheet_options.get("layers", ())]
+        return save_picture(draw_sheet(surface, **sheet_options), path)
+
+    def _at_points(self, given: SurfaceValues | ArrayLike) -> SurfaceValues:
+        """Values of the mesh, or per point, as values per point."""
+        values = SurfaceValues.of(given)
+        if values.contours is not None:
+            raise InvalidOption("tube_values have contours; only those of surfaces can have them")
+        numbers = lines.values_at_points(self, "tube_values", values.values)
+        if values.categories is not None and np.shape(values.values) == (len(self.mesh.vertices),):
+            raise InvalidOption("categories need one number per triangle or point: vertices would mix them")
+        return replace(values, values=numbers)

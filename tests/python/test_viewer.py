@@ -25,9 +25,10 @@ from pectinate import datasets, place_streamlines
 from pectinate.cli import ExitCode, main
 from pectinate.errors import InvalidFile, InvalidMesh, InvalidOption, MissingDependency
 from pectinate.figure import SurfaceValues
+from pectinate.figure.parts import resampled
 from pectinate.viewer import Lines, Marker, Page, Part
 from pectinate.viewer.encoding import NO_VALUE, coherent_order, first_use_codes, quantized_points, quantized_values
-from pectinate.viewer.scene import describe_scene, resampled
+from pectinate.viewer.scene import describe_scene
 from pectinate.viewer.three import three_js
 
 
@@ -83,7 +84,7 @@ def test_resampled_lines_keep_their_ends_and_lie_on_the_lines(
 ) -> None:
     generator = np.random.default_rng(seed)
     lines = [length * np.cumsum(generator.normal(size=(generator.integers(2, 9), 3)), axis=0) for length in lengths]
-    points, counts = resampled(Lines(np.concatenate(lines), np.cumsum([0, *map(len, lines)]), radius, taper))
+    points, _, counts = resampled(Lines(np.concatenate(lines), np.cumsum([0, *map(len, lines)]), radius, taper))
     assert len(counts) == len(lines)
     for line, samples in zip(lines, np.split(points, np.cumsum(counts)[:-1]), strict=True):
         np.testing.assert_array_equal(samples[[0, -1]], line[[0, -1]])

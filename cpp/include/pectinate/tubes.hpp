@@ -23,6 +23,9 @@ struct Tubes {
   std::vector<Triangle> triangles;
   std::vector<std::int64_t> vertex_offsets;    ///< streamline count + 1
   std::vector<std::int64_t> triangle_offsets;  ///< streamline count + 1
+  /// Where along the streamlines each vertex is: the index of a point of the placement, and the share of the way to the
+  /// next one.
+  std::vector<double> vertex_points;
 };
 
 /// Regular polygons extruded along the streamlines with the radius of the paper's equation (3),

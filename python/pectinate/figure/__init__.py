@@ -1,6 +1,7 @@
 """Drawings of surfaces with tubes and values on them, offscreen, and of the disk that a surface is mapped to."""
 
 from pectinate.figure.cells import Cell, figure_sheet
+from pectinate.figure.contours import Contour, contour_lines
 from pectinate.figure.disk import draw_disk
 from pectinate.figure.lines import line_tubes
 from pectinate.figure.parts import Lines, Marker, Part
@@ -16,6 +17,7 @@ from pectinate.figure.views import STANDARD_VIEWS, View, principal_views, standa
 __all__ = [
     "STANDARD_VIEWS",
     "Cell",
+    "Contour",
     "Layer",
     "Lines",
     "Marker",
@@ -24,6 +26,7 @@ __all__ = [
     "Style",
     "SurfaceValues",
     "View",
+    "contour_lines",
     "draw_disk",
     "draw_lengths",
     "draw_sheet",

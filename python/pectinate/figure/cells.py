@@ -12,19 +12,19 @@ from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
 from pectinate.errors import InvalidOption
-from pectinate.figure.color_bar import beside_color_bar
+from pectinate.figure.color_bar import beside_color_bars
 from pectinate.figure.files import check_picture_path, save_picture
 from pectinate.figure.frame import Frame, fitting_scale, middle
 from pectinate.figure.layout import Layout
 from pectinate.figure.markers import RADIUS, draw_markers
 from pectinate.figure.offscreen import open_canvas
-from pectinate.figure.parts import Marker, Part, nearest_parts, normal_at, three_numbers
+from pectinate.figure.parts import Marker, Part, nearest_parts, normal_at, three_numbers, values_at
 from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import Drawn, draw_frame
 from pectinate.figure.scale_bar import draw_bar
 from pectinate.figure.shading import Style
 from pectinate.figure.shape import Drawing, Layer, check_layers, check_surface
-from pectinate.figure.values import SurfaceValues, corner_values, joined_scale, range_of
+from pectinate.figure.values import SurfaceValues, corner_values, shared_values
 from pectinate.figure.views import View, resolve_view
 from pectinate.figure.writing import ink_color
 
@@ -37,7 +37,7 @@ class MakesPart(Protocol):
 
 
 Shown: TypeAlias = Part | MakesPart
-SurfaceValuesOf: TypeAlias = Callable[[Part], SurfaceValues | None]
+ValuesOf: TypeAlias = Callable[[object], SurfaceValues | None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,6 +77,7 @@ def figure_sheet(  # noqa: PLR0913
     title: str | None = None,
     scale_bar: bool = True,
     shown_values: str | None = None,
+    shown_tube_values: str | None = None,
     hidden_depth: float = 2.0,
     transparent: bool = False,
     supersampling: int = 2,
@@ -105,6 +106,8 @@ def figure_sheet(  # noqa: PLR0913
         Whether the lower right corner gets a bar of a round number of mm.
     shown_values : str, optional
         Name of the values that colour the surfaces, for parts that have them; by default none.
+    shown_tube_values : str, optional
+        Name of the values that colour the tubes of streamlines, likewise.
     hidden_depth : float
         mm: a marker is hidden where its place lies deeper than this behind what is seen there.
     transparent : bool
@@ -141,7 +144,11 @@ def figure_sheet(  # noqa: PLR0913
     rows = _rows(cells)
     places = {(i, j): cell for i, row in enumerate(rows) for j, cell in enumerate(row) if cell is not None}
     parts = {place: _parts(cell) for place, cell in places.items()}
-    values = _shared_values([part for some in parts.values() for part in some], shown_values)
+    all_parts = [part for some in parts.values() for part in some]
+    values = (
+        _no_values if shown_values is None else _values_of_surfaces(all_parts, shown_values),
+        _no_values if shown_tube_values is None else _values_of_lines(all_parts, shown_tube_values),
+    )
     pictures = {place: _Picture.of(cell, parts[place], values, axes, style) for place, cell in places.items()}
     if mm_per_pixel is None:
         width, height = np.max([picture.extent() for picture in pictures.values()], axis=0).tolist()
@@ -159,10 +166,9 @@ def figure_sheet(  # noqa: PLR0913
             layout.put(sheet, place, image, picture.cell.title, style)
     if scale_bar:
         draw_bar(sheet, mm_per_pixel, size, ink_color(style))
-    shown = [surface.colors for picture in pictures.values() for surface in picture.drawing.surfaces]
-    explained = joined_scale([colors for colors in shown if colors is not None])
-    if explained is not None:
-        sheet = beside_color_bar(sheet, explained, size[1], style)
+    sheet = beside_color_bars(
+        sheet, [key for picture in pictures.values() for key in picture.drawing.keys], size[1], style
+    )
     return save_picture(sheet, path, dpi=dpi)
 
 
@@ -178,18 +184,20 @@ class _Picture:
 
     @classmethod
     def of(
-        cls, cell: Cell, parts: list[Part], values: SurfaceValuesOf, axes: str | PatientAxes, style: Style
+        cls, cell: Cell, parts: list[Part], values: tuple[ValuesOf, ValuesOf], axes: str | PatientAxes, style: Style
     ) -> _Picture:
         surfaces, layers = [], []
+        of_surface, of_lines = values
         for part in parts:
             color = style.surface_color if part.surface_color is None else part.surface_color
             surface = part.placed(part.surface[0]), part.surface[1]
-            surfaces.append(check_surface(f"part {part.name!r}", surface, color, values(part), style))
+            surfaces.append(check_surface(f"part {part.name!r}", surface, color, of_surface(part), style))
             for lines, tube_color in ((part.streamlines, style.tube_color), (part.tracts, style.tract_color)):
                 if lines is not None:
-                    vertices, triangles = lines.tubes()
-                    layers.append(Layer((part.placed(vertices), triangles), tube_color))
-        drawing = Drawing(tuple(surfaces), check_layers(layers))
+                    tubes, colored = lines.tubes(), of_lines(lines)
+                    numbers = None if colored is None else values_at(colored, tubes.vertex_points)
+                    layers.append(Layer((part.placed(tubes.vertices), tubes.triangles), tube_color, numbers))
+        drawing = Drawing(tuple(surfaces), check_layers(layers, style))
         view = resolve_view(cell.view, drawing.points, axes)
         if cell.centre is None:
             return cls(cell, parts, drawing, view, middle(drawing.points, view))
@@ -228,33 +236,38 @@ def _titles(given: Sequence[str], count: int, name: str) -> tuple[str, ...]:
     return titles
 
 
-def _shared_values(parts: list[Part], name: str | None) -> SurfaceValuesOf:
+def _no_values(_: object) -> None:
+    """No part has values that are shown."""
+
+
+def _values_of_surfaces(parts: list[Part], name: str) -> ValuesOf:
     """What gives each part its values of a name, all on one scale."""
-    if name is None:
-        return lambda _: None
-    given = {id(part): part.surface_values[name] for part in parts if name in part.surface_values}
-    if not given:
-        raise InvalidOption(f"shown_values {name!r}: no part has values of that name")
-    told = [values for values in given.values() if isinstance(values, SurfaceValues)]
-    first = told[0] if told else SurfaceValues(())
-    scale = next((values.value_range for values in told if values.value_range is not None), None)
-    if scale is None:
-        scale = range_of(np.concatenate([_finite(part, given[id(part)]) for part in parts if id(part) in given]))
-
-    def of_part(part: Part) -> SurfaceValues | None:
-        if id(part) not in given:
-            return None
-        values = given[id(part)]
-        numbers = values.values if isinstance(values, SurfaceValues) else values
-        return SurfaceValues(numbers, first.colormap, scale, first.label or name)
-
-    return of_part
+    owners = []
+    for part in parts:
+        if name in part.surface_values:
+            values = SurfaceValues.of(part.surface_values[name])
+            vertices, triangles = (np.asarray(array) for array in part.surface)
+            owners.append((part, values, corner_values(values, triangles, len(vertices))))
+    return _shared(owners, name, "shown_values")
 
 
-def _finite(part: Part, values: SurfaceValues | ArrayLike) -> NDArray[np.float64]:
-    numbers = values.values if isinstance(values, SurfaceValues) else values
-    corners = corner_values(numbers, np.asarray(part.surface[1]), len(np.asarray(part.surface[0])))
-    return corners[np.isfinite(corners)]
+def _values_of_lines(parts: list[Part], name: str) -> ValuesOf:
+    """What gives the streamlines of each part their values of a name, all on one scale."""
+    owners = []
+    for lines in (part.streamlines for part in parts):
+        if lines is not None and name in lines.values:
+            values = SurfaceValues.of(lines.values[name])
+            owners.append((lines, values, np.asarray(values.values, dtype=np.float64)))
+    return _shared(owners, name, "shown_tube_values")
+
+
+def _shared(owners: Sequence[tuple[object, SurfaceValues, NDArray[np.float64]]], name: str, option: str) -> ValuesOf:
+    if not owners:
+        raise InvalidOption(f"{option} {name!r}: no part has values of that name")
+    numbers = np.concatenate([numbers.ravel() for *_, numbers in owners])
+    shared = shared_values([values for _, values, _ in owners], numbers[np.isfinite(numbers)], name)
+    by_owner = {id(owner): values for (owner, *_), values in zip(owners, shared, strict=True)}
+    return lambda owner: by_owner.get(id(owner))
 
 
 def _mark(image: Image.Image, drawn: Drawn, picture: _Picture, hidden_depth: float) -> None:

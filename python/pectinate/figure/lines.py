@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -17,6 +18,17 @@ _END_RINGS = np.array([0.0, 1 / 3, 2 / 3, 1.0])
 _LEAST_AXIS = 1e-6
 
 _Points = NDArray[np.float64]
+
+
+class LineTubes(NamedTuple):
+    """Tubes around lines: vertices (V, 3) in mm, triangles (T, 3), and which point of the lines each vertex is at.
+
+    `vertex_points` (V,) float64 counts the points of all lines; a fraction is the share of the way to the next point.
+    """
+
+    vertices: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+    vertex_points: NDArray[np.float64]
 
 
 def line_tubes(
@@ -46,32 +58,43 @@ def line_tubes(
         A line has fewer than two different points or one that is not finite, the radius is not above 0, or there are
         too few sides.
     """
+    tubes = located_tubes(lines, radius, side_count=side_count)
+    return tubes.vertices, tubes.triangles
+
+
+def located_tubes(lines: Sequence[ArrayLike], radius: float, *, side_count: int = 10) -> LineTubes:
+    """As `line_tubes`, with the point that each vertex is at."""
     if not (np.isfinite(radius) and radius > 0):
         raise InvalidOption(f"radius {radius}: give a number above 0")
     if side_count < _FEWEST_SIDES:
         raise InvalidOption(f"side_count {side_count}: give at least {_FEWEST_SIDES}")
-    vertices, triangles = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)]
-    count = 0
+    vertices, triangles, places = [np.zeros((0, 3))], [np.zeros((0, 3), dtype=np.int64)], [np.zeros(0)]
+    count = point_count = 0
     for index, line in enumerate(lines):
-        rings = _rings(_distinct_points(index, line), radius, side_count)
+        points, distinct = _distinct_points(index, line)
+        rings = _rings(points, radius, side_count)
         used, corners = np.unique(_between_rings(len(rings), side_count), return_inverse=True)
         vertices.append(rings.reshape(-1, 3)[used])
         triangles.append(count + corners.reshape(-1, 3))
+        # All rings of a round end belong to the point where it begins.
+        ring_points = np.clip(used // side_count - len(_END_RINGS) + 1, 0, len(points) - 1)
+        places.append(point_count + distinct[ring_points].astype(np.float64))
         count += len(used)
-    return np.concatenate(vertices), np.concatenate(triangles)
+        point_count += len(np.asarray(line))
+    return LineTubes(np.concatenate(vertices), np.concatenate(triangles), np.concatenate(places))
 
 
-def _distinct_points(index: int, line: ArrayLike) -> _Points:
-    """Return the points of a line without those that repeat the one before."""
+def _distinct_points(index: int, line: ArrayLike) -> tuple[_Points, NDArray[np.int64]]:
+    """Return the points of a line without those that repeat the one before, and which of them these are."""
     points = np.asarray(line, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 3:  # noqa: PLR2004
         raise InvalidOption(f"line {index}: points of shape {points.shape}; give an array of shape (n, 3)")
     if not np.isfinite(points).all():
         raise InvalidOption(f"line {index}: a point is not finite; remove it")
-    points = points[np.append(True, np.any(np.diff(points, axis=0) != 0, axis=1))] if len(points) else points
-    if len(points) < 2:  # noqa: PLR2004
+    new = np.append(np.ones(min(len(points), 1), dtype=bool), np.any(np.diff(points, axis=0) != 0, axis=1))
+    if np.count_nonzero(new) < 2:  # noqa: PLR2004
         raise InvalidOption(f"line {index}: it has fewer than two different points; remove it")
-    return points
+    return points[new], np.flatnonzero(new)
 
 
 def _rings(points: _Points, radius: float, side_count: int) -> NDArray[np.float64]:

@@ -4,22 +4,42 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TypeAlias
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pectinate.errors import InvalidMesh, InvalidOption
-from pectinate.figure.lines import line_tubes
+from pectinate.figure.lines import located_tubes
 from pectinate.figure.shading import Color, check_color
-from pectinate.figure.shape import Triangles, check_shape
-from pectinate.figure.values import SurfaceValues
+from pectinate.figure.triangles import Triangles, check_shape
+from pectinate.figure.values import NamedValues, SurfaceValues
 
-Values: TypeAlias = Mapping[str, SurfaceValues | ArrayLike] | SurfaceValues | ArrayLike
+Values: TypeAlias = NamedValues | SurfaceValues | ArrayLike
 
 _FEWEST_POINTS = 2
 # How far a rotation may be from a rotation.
 _ROUNDING = 1e-6
+# Tubes get a ring every so many radii; closer ones do not show.
+_RING_SPACING = 1.5
+# Nor are rings farther apart than this share of the taper length, so that the taper is followed.
+_TAPER_STEP = 0.5
+
+
+class TubeMesh(Protocol):
+    """Tubes as `pectinate.figure.lines.LineTubes` and the engine have them."""
+
+    @property
+    def vertices(self) -> NDArray[np.float64]:
+        """(V, 3) float64, mm."""
+
+    @property
+    def triangles(self) -> NDArray[np.integer[Any]]:
+        """(T, 3) int."""
+
+    @property
+    def vertex_points(self) -> NDArray[np.float64]:
+        """(V,) float64: the point that each vertex is at, and the share of the way to the next one."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,21 +57,23 @@ class Lines:
     taper_length : float
         mm, over which the ends grow thin (the paper's equation 3); 0 gives round ends.
     make_tubes : callable, optional
-        Makes the vertices and triangles of the tubes for pictures, when they are needed; by default tubes with round
-        ends.
+        Makes the tubes for pictures, when they are needed; by default tubes with round ends.
+    values : mapping from str to SurfaceValues or (N,) float
+        Numbers per point that can colour the tubes, by name.
 
     Raises
     ------
     InvalidOption
-        A point is not finite, a line has fewer than two, the offsets do not part the points, or a length is out of its
-        range.
+        A point is not finite, a line has fewer than two, the offsets do not part the points, a length is out of its
+        range, or there is not one value per point.
     """
 
     points: NDArray[np.float64]
     offsets: NDArray[np.int64]
     radius: float
     taper_length: float = 0.0
-    make_tubes: Callable[[], Triangles] | None = None
+    make_tubes: Callable[[], TubeMesh] | None = None
+    values: NamedValues = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.radius) and self.radius > 0):
@@ -65,6 +87,8 @@ class Lines:
             raise InvalidOption(f"lines: offsets must go from 0 to the number of points, {len(self.points)}")
         if (np.diff(self.offsets) < _FEWEST_POINTS).any():
             raise InvalidOption("lines: one has fewer than two points; remove it")
+        for name, given in self.values.items():
+            _check_point_values(name, SurfaceValues.of(given), len(self.points))
 
     @classmethod
     def of(cls, lines: Sequence[ArrayLike], radius: float) -> Lines:
@@ -79,12 +103,52 @@ class Lines:
         offsets = np.cumsum([0] + [len(line) for line in arrays])
         return cls(np.concatenate([np.zeros((0, 3)), *arrays]), offsets, radius)
 
-    def tubes(self) -> Triangles:
-        """Vertices (V, 3) in mm and triangles (T, 3) of the tubes."""
+    def tubes(self) -> TubeMesh:
+        """Make the tubes."""
         if self.make_tubes is not None:
             return self.make_tubes()
         lines = np.split(self.points, self.offsets[1:-1]) if len(self.offsets) > 1 else []
-        return line_tubes(lines, self.radius)
+        return located_tubes(lines, self.radius)
+
+
+def values_at(given: SurfaceValues, places: NDArray[np.float64]) -> SurfaceValues:
+    """Take values per point of lines to places on them, such as those of the vertices of tubes.
+
+    Between two points they are interpolated; categories are those of the nearer one.
+    """
+    numbers = np.asarray(given.values, dtype=np.float64)
+    whole = given.categories is not None
+    return replace(given, values=numbers[np.rint(places).astype(np.int64)] if whole else _between(numbers, places))
+
+
+def resampled(lines: Lines) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.int64]]:
+    """Points at even distances along each line, its ends among them, as closely as tubes need them.
+
+    Returns
+    -------
+    points : (M, 3) float64
+        mm, one line after the other.
+    places : (M,) float64
+        Where on the lines the points are: the index of one of theirs, and the share of the way to the next one.
+    counts : (n,) int64
+        Points of each line, at least two.
+    """
+    if len(lines.offsets) < 2:  # noqa: PLR2004
+        return np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.int64)
+    spacing = _RING_SPACING * lines.radius
+    if lines.taper_length > 0:
+        spacing = min(spacing, _TAPER_STEP * lines.taper_length)
+    steps = np.linalg.norm(np.diff(lines.points, axis=0), axis=1)
+    first, last = lines.offsets[:-1], lines.offsets[1:] - 1
+    # Whole numbers of lines apart, so that no line's samples reach into the next one.
+    steps[last[:-1]] = 1.0
+    arc = np.append(0.0, np.cumsum(steps))
+    counts = np.maximum(2, 1 + np.ceil((arc[last] - arc[first]) / spacing).astype(np.int64))
+    rank = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
+    share = rank / np.repeat(counts - 1, counts)
+    samples = np.repeat(arc[first], counts) * (1 - share) + np.repeat(arc[last], counts) * share
+    places = np.interp(samples, arc, np.arange(len(arc)))
+    return _between(lines.points, places), places, counts
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +188,7 @@ class Part:
     surface: Triangles
     streamlines: Lines | None = None
     tracts: Lines | None = None
-    surface_values: Mapping[str, SurfaceValues | ArrayLike] = field(default_factory=dict)
+    surface_values: NamedValues = field(default_factory=dict)
     visible: bool = True
     surface_color: Color | None = None
     offset: ArrayLike = (0.0, 0.0, 0.0)
@@ -180,6 +244,23 @@ class Marker:
             three_numbers(place, f"marker {self.text!r}: position")
 
 
+def _check_point_values(name: str, given: SurfaceValues, point_count: int) -> None:
+    numbers = np.asarray(given.values)
+    if numbers.shape != (point_count,) or numbers.dtype.kind not in "fiub":
+        what = f"lines: values {name!r} of shape {numbers.shape} and type {numbers.dtype}"
+        raise InvalidOption(f"{what}; give one number per point ({point_count},)")
+    if given.contours is not None:
+        raise InvalidOption(f"lines: values {name!r} have contours; only those of surfaces can have them")
+
+
+def _between(table: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rows of a table, interpolated between one and the next; a row without weight takes no part, even if it is NaN."""
+    first = np.floor(places).astype(np.int64)
+    share = (places - first).reshape(-1, *[1] * (table.ndim - 1))
+    second = np.where(places > first, first + 1, first)
+    return np.asarray((1 - share) * table[first] + share * table[second])
+
+
 def three_numbers(given: ArrayLike, what: str) -> NDArray[np.float64]:
     """Check a place or a direction, (3,) float64; `what` begins the message where it is none."""
     vector = np.array(given, dtype=np.float64)
@@ -188,7 +269,7 @@ def three_numbers(given: ArrayLike, what: str) -> NDArray[np.float64]:
     return vector
 
 
-def named_values(values: Values | None) -> Mapping[str, SurfaceValues | ArrayLike]:
+def named_values(values: Values | None) -> NamedValues:
     """Values by name; those given without one get their label, or "values"."""
     if values is None:
         return {}

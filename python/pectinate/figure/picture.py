@@ -15,7 +15,8 @@ from pectinate.figure.frame import Frame, extent, fitting_scale, middle
 from pectinate.figure.offscreen import Canvas, Stage, open_canvas
 from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.shading import VALUE_SHADE, Style, box_downsample, fold_shadow
-from pectinate.figure.shape import Drawing, Layer, Triangles, check_drawing, patches
+from pectinate.figure.shape import Drawing, Layer, check_drawing, patches
+from pectinate.figure.triangles import Triangles
 from pectinate.figure.values import SurfaceValues
 from pectinate.figure.views import View, resolve_view
 

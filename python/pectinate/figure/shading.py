@@ -24,7 +24,9 @@ class Style:
     tract_color : tuple of 3 float
         Colour in full light of tracts.
     no_value_color : tuple of 3 float
-        Colour, where the surface shows values, of what has none.
+        Colour, where values are shown, of what has none.
+    contour_color : tuple of 3 float
+        Colour in full light of the contours of values.
     background_color : tuple of 3 float
         Colour of the paper.
     tube_gloss : float
@@ -40,6 +42,7 @@ class Style:
     tube_color: Color = (0.10, 0.09, 0.09)
     tract_color: Color = (0.0, 0.0, 0.0)
     no_value_color: Color = (0.72, 0.72, 0.72)
+    contour_color: Color = (1.0, 1.0, 1.0)
     background_color: Color = (1.0, 1.0, 1.0)
     tube_gloss: float = 0.2
     fold_darkness: float = 0.45

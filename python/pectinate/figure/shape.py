@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pectinate.errors import InvalidMesh
+from pectinate.figure.contours import contour_tubes
 from pectinate.figure.offscreen import Patch
 from pectinate.figure.shading import (
     Color,
@@ -19,22 +20,10 @@ from pectinate.figure.shading import (
     shaded,
     triangle_normals,
     value_light,
-    vertex_normals,
 )
-from pectinate.figure.values import CornerColors, SurfaceValues, corner_colors
+from pectinate.figure.triangles import Shape, Triangles, check_shape
+from pectinate.figure.values import Key, SurfaceValues, ValueColors, corner_colors, vertex_colors
 from pectinate.figure.views import View
-
-Triangles = tuple[ArrayLike, ArrayLike]
-"""Vertices (V, 3) float in mm and triangles (T, 3) int, counter-clockwise seen from outside."""
-
-
-@dataclass(frozen=True)
-class Shape:
-    """Triangles with what all views of them share; made by `check_shape`."""
-
-    vertices: NDArray[np.float64]
-    triangles: NDArray[np.int64]
-    normals: NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,38 +36,60 @@ class Layer:
         (V, 3) float in mm and (T, 3) int, counter-clockwise seen from outside.
     color : tuple of 3 float
         Display RGB in full light, 0 to 1.
+    values : SurfaceValues or (V,) float, optional
+        Numbers per vertex of the tubes that colour them instead.
     """
 
     triangles: Triangles
     color: Color
+    values: SurfaceValues | ArrayLike | None = None
+
+
+@dataclass(frozen=True)
+class Tubes:
+    """Tubes with their colour in full light, or the colours of their values; `calm` ones are lit like values."""
+
+    shape: Shape
+    color: Color
+    colors: ValueColors | None = None
+    calm: bool = False
 
 
 @dataclass(frozen=True)
 class Surface:
-    """A surface with its colour in full light, or the colours of its values."""
+    """A surface with its colour in full light, or the colours of its values and their contours."""
 
     shape: Shape
     color: Color
-    colors: CornerColors | None = None
+    colors: ValueColors | None = None
+    contours: tuple[Tubes, ...] = ()
 
 
 @dataclass(frozen=True)
 class Drawing:
-    """What pictures show: surfaces, and tubes with the colour of each."""
+    """What pictures show: surfaces and tubes."""
 
     surfaces: tuple[Surface, ...]
-    tubes: tuple[tuple[Shape, Color], ...]
+    tubes: tuple[Tubes, ...]
 
     @property
     def points(self) -> NDArray[np.float64]:
-        """Every vertex that is drawn, (n, 3) float64 in mm."""
-        shapes = [surface.shape for surface in self.surfaces] + [shape for shape, _ in self.tubes]
-        return np.concatenate([shape.vertices for shape in shapes])
+        """Every vertex that is drawn but those of contours, (n, 3) float64 in mm."""
+        return np.concatenate([drawn.shape.vertices for drawn in self._all])
 
     @property
     def shows_values(self) -> bool:
-        """Whether a surface shows values."""
-        return any(surface.colors is not None for surface in self.surfaces)
+        """Whether a surface or a tube shows values."""
+        return bool(self.keys)
+
+    @property
+    def keys(self) -> list[Key]:
+        """What the colours mean, those of surfaces first."""
+        return [drawn.colors.key for drawn in self._all if drawn.colors is not None]
+
+    @property
+    def _all(self) -> list[Surface | Tubes]:
+        return [*self.surfaces, *self.tubes]
 
     @property
     def diagonal(self) -> float:
@@ -104,7 +115,7 @@ def check_drawing(
     """
     given = [] if tubes is None else [Layer(tubes, style.tube_color)]
     whole = check_surface("surface", surface, style.surface_color, surface_values, style)
-    return Drawing((whole,), check_layers([*given, *layers]))
+    return Drawing((whole,), check_layers([*given, *layers], style))
 
 
 def check_surface(
@@ -118,43 +129,30 @@ def check_surface(
     shape = check_shape(name, triangles)
     if shape is None:
         raise InvalidMesh(f"the {name} has no triangles: there is nothing to draw")
-    colors = None
-    if surface_values is not None:
-        vertex_count = len(np.asarray(triangles[0]))
-        colors = corner_colors(surface_values, np.asarray(triangles[1]), vertex_count, style.no_value_color)
-    return Surface(shape, color, colors)
+    if surface_values is None:
+        return Surface(shape, color)
+    values, vertex_count = SurfaceValues.of(surface_values), len(np.asarray(triangles[0]))
+    colors = corner_colors(values, np.asarray(triangles[1]), vertex_count, style.no_value_color)
+    lines = contour_tubes(triangles, values)
+    tubes = [] if lines is None else [lines.tubes()]
+    contours = check_layers([Layer((some.vertices, some.triangles), style.contour_color) for some in tubes], style)
+    return Surface(shape, color, colors, tuple(replace(some, calm=True) for some in contours))
 
 
-def check_layers(layers: Sequence[Layer]) -> tuple[tuple[Shape, Color], ...]:
+def check_layers(layers: Sequence[Layer], style: Style) -> tuple[Tubes, ...]:
     """Check tubes and their colours; those without triangles are left out."""
-    checked = ((check_shape("tubes", layer.triangles), check_color(layer.color)) for layer in layers)
-    return tuple((tube, color) for tube, color in checked if tube is not None)
+    checked = (_check_tubes(layer, style) for layer in layers)
+    return tuple(tubes for tubes in checked if tubes is not None)
 
 
-def check_shape(name: str, arrays: Triangles) -> Shape | None:
-    """Check triangles and drop the vertices that none of them uses; None without triangles.
-
-    Raises
-    ------
-    InvalidMesh
-        If an array has the wrong shape or type, an index is out of range, or a used vertex is not finite.
-    """
-    vertices, triangles = np.asarray(arrays[0], dtype=np.float64), np.asarray(arrays[1])
-    for what, array in (("vertices", vertices), ("triangles", triangles)):
-        if array.ndim != 2 or array.shape[1] != 3:  # noqa: PLR2004
-            raise InvalidMesh(f"{name}: {what} of shape {array.shape}; give an array of shape (n, 3)")
-    if not len(triangles):
+def _check_tubes(layer: Layer, style: Style) -> Tubes | None:
+    shape, color = check_shape("tubes", layer.triangles), check_color(layer.color)
+    if shape is None:
         return None
-    if not np.issubdtype(triangles.dtype, np.integer):
-        raise InvalidMesh(f"{name}: triangles of type {triangles.dtype}; give whole numbers")
-    low, high = triangles.min(), triangles.max()
-    if low < 0 or high >= len(vertices):
-        raise InvalidMesh(f"{name}: triangles refer to vertices {low} to {high}; there are {len(vertices)} vertices")
-    vertices, triangles = _used(vertices, triangles.astype(np.int64))
-    finite = np.isfinite(vertices).all(axis=1)
-    if not finite.all():
-        raise InvalidMesh(f"{name}: {np.count_nonzero(~finite)} vertices in use are not finite; remove their triangles")
-    return Shape(vertices, triangles, vertex_normals(vertices, triangles))
+    if layer.values is None:
+        return Tubes(shape, color)
+    colors = vertex_colors(layer.values, len(np.asarray(layer.triangles[0])), style.no_value_color)
+    return Tubes(shape, color, ValueColors(colors.colors[shape.rows], colors.key))
 
 
 def patches(drawing: Drawing, view: View, centre: NDArray[np.float64], style: Style) -> list[Patch]:
@@ -162,8 +160,8 @@ def patches(drawing: Drawing, view: View, centre: NDArray[np.float64], style: St
     result = []
     for surface in drawing.surfaces:
         result += _surface_patches(surface, view, centre, style)
-    for shape, color in drawing.tubes:
-        result += _tube_patches(shape, color, view, centre, style)
+    for tubes in (*drawing.tubes, *(lines for surface in drawing.surfaces for lines in surface.contours)):
+        result += _tube_patches(tubes, view, centre, style)
     return result
 
 
@@ -185,18 +183,14 @@ def _surface_patches(surface: Surface, view: View, centre: NDArray[np.float64], 
     return [patch for patch in sides if len(patch.triangles)]
 
 
-def _tube_patches(shape: Shape, color: Color, view: View, centre: NDArray[np.float64], style: Style) -> list[Patch]:
+def _tube_patches(tubes: Tubes, view: View, centre: NDArray[np.float64], style: Style) -> list[Patch]:
     """The halves of the tubes that face the viewer; the others are hidden, because tubes are closed."""
-    rotation = view.rotation()
+    shape, rotation = tubes.shape, view.rotation()
     vertices, normals = (shape.vertices - centre) @ rotation.T, shape.normals @ rotation.T
     facing = shape.triangles[triangle_normals(vertices, shape.triangles)[:, 2] > 0]
-    colors = shaded(color, light(normals, 0.0), style.tube_gloss * gloss(normals))
+    if tubes.colors is not None or tubes.calm:
+        # No gloss, which would be another colour.
+        colors = shaded(tubes.color if tubes.colors is None else tubes.colors.colors, value_light(normals, 0.0))
+    else:
+        colors = shaded(tubes.color, light(normals, 0.0), style.tube_gloss * gloss(normals))
     return [Patch(vertices, facing, colors)] if len(facing) else []
-
-
-def _used(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    used = np.zeros(len(vertices), dtype=bool)
-    used[triangles] = True
-    if used.all():
-        return vertices, triangles
-    return vertices[used], (np.cumsum(used) - 1)[triangles]

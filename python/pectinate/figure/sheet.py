@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from PIL import Image
 
 from pectinate.errors import InvalidOption
-from pectinate.figure.color_bar import beside_color_bar
+from pectinate.figure.color_bar import beside_color_bars
 from pectinate.figure.frame import Frame, extent, fitting_scale, middle
 from pectinate.figure.layout import Layout
 from pectinate.figure.offscreen import open_canvas
@@ -17,7 +17,8 @@ from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import draw_frame
 from pectinate.figure.scale_bar import draw_bar
 from pectinate.figure.shading import Style
-from pectinate.figure.shape import Layer, Triangles, check_drawing
+from pectinate.figure.shape import Layer, check_drawing
+from pectinate.figure.triangles import Triangles
 from pectinate.figure.values import SurfaceValues
 from pectinate.figure.views import STANDARD_VIEWS, View, resolve_view
 from pectinate.figure.writing import ink_color
@@ -90,8 +91,7 @@ def draw_sheet(  # noqa: PLR0913
             layout.put(sheet, (i // columns, i % columns), picture, seen.name, style)
     if scale_bar:
         draw_bar(sheet, scale, size, ink_color(style))
-    colors = drawing.surfaces[0].colors
-    return sheet if colors is None else beside_color_bar(sheet, colors, size[1], style)
+    return beside_color_bars(sheet, drawing.keys, size[1], style)
 
 
 def _check_columns(columns: int | None, count: int) -> int:

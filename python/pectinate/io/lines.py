@@ -40,7 +40,7 @@ def point_arrays(placement: Placement, values: Mapping[str, ArrayLike] | None = 
     placement
         The streamlines.
     values
-        Numbers per triangle (T,) or vertex (V,) of `mesh`; between vertices they are interpolated.
+        Numbers per triangle (T,) or vertex (V,) of `mesh`, between which they are interpolated, or per point (N,).
 
     Raises
     ------
@@ -55,7 +55,7 @@ def point_arrays(placement: Placement, values: Mapping[str, ArrayLike] | None = 
         "input_triangle": placement.mesh.input_triangle[triangles],
         "barycentric": placement.barycentric,
     }
-    return arrays | {name: _at_points(placement, name, given) for name, given in (values or {}).items()}
+    return arrays | {name: values_at_points(placement, name, given) for name, given in (values or {}).items()}
 
 
 def to_polylines(placement: Placement, values: Mapping[str, ArrayLike] | None = None) -> Any:
@@ -112,17 +112,30 @@ def _arc_lengths(placement: Placement) -> NDArray[np.float64]:
     return np.asarray(sums - np.repeat(sums[placement.offsets[:-1]], np.diff(placement.offsets)))
 
 
-def _at_points(placement: Placement, name: str, values: ArrayLike) -> NDArray[np.float64]:
-    array, mesh = np.asarray(values, dtype=np.float64), placement.mesh
+def values_at_points(placement: Placement, name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """Values (N,) at the points of streamlines, of values per triangle, vertex or point.
+
+    Raises
+    ------
+    InvalidOption
+        There is not one number per triangle, vertex or point.
+    """
+    mesh = placement.mesh
+    try:
+        array = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InvalidOption(f"values {name!r}: {error}; give one number per triangle, vertex or point") from error
     if array.shape == (mesh.triangle_count,):
         return np.asarray(array[placement.point_triangles])
     if array.shape == (len(mesh.vertices),):
         corners = array[mesh.triangles[placement.point_triangles]]
         # A corner without weight takes no part, even if it is NaN.
         return np.asarray(np.where(placement.barycentric != 0, placement.barycentric * corners, 0.0).sum(axis=1))
+    if array.shape == (len(placement.points),):
+        return array
     raise InvalidOption(
         f"values {name!r} of shape {array.shape}: give one number per triangle ({mesh.triangle_count},) or vertex "
-        f"({len(mesh.vertices)},) of the mesh"
+        f"({len(mesh.vertices)},) of the mesh, or per point of the streamlines ({len(placement.points)},)"
     )
 
 

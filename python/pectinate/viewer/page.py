@@ -49,8 +49,8 @@ class Page:
         A button for each; the page begins with the first.
     axes : str or PatientAxes
         Where +x, +y and +z point in the patient, for the standard views.
-    shown_values : str, optional
-        Name of the values that are shown at first; by default the first ones.
+    shown_values, shown_tube_values : str, optional
+        Names of the values that colour surfaces and streamlines at first; by default the first ones.
     style : Style
         Colours and light.
 
@@ -72,11 +72,17 @@ class Page:
         views: Sequence[str | View] = STANDARD_VIEWS,
         axes: str | PatientAxes = "LPS",
         shown_values: str | None = None,
+        shown_tube_values: str | None = None,
         style: Style = Style(),  # noqa: B008  (immutable)
     ) -> None:
         given = [parts] if isinstance(parts, Part) else list(parts)
         scene, arrays = describe_scene(given, markers, views, axes, style)
-        scene |= {"title": title, "notes": list(notes), "shown_values": _index(scene["scales"], shown_values)}
+        scene |= {
+            "title": title,
+            "notes": list(notes),
+            "shown_values": _index(scene["scales"], shown_values, "shown_values"),
+            "shown_tube_values": _index(scene["tube_scales"], shown_tube_values, "shown_tube_values"),
+        }
         self._html = Template(_static("page.html")).substitute(
             title=html.escape(title or "pectinate"),
             css=_static("page.css"),
@@ -137,13 +143,13 @@ class Page:
         return self
 
 
-def _index(scales: list[dict[str, Any]], name: str | None) -> int:
+def _index(scales: list[dict[str, Any]], name: str | None, option: str) -> int:
     """Index of the values that are shown at first."""
     if name is None:
         return 0
     names = [scale["name"] for scale in scales]
     if name not in names:
-        raise InvalidOption(f"shown_values is {name!r}, but must be one of: {', '.join(names) or '(there are none)'}")
+        raise InvalidOption(f"{option} is {name!r}, but must be one of: {', '.join(names) or '(there are none)'}")
     return names.index(name)
 
 

@@ -3,19 +3,38 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from pectinate.errors import InvalidOption
+from pectinate.figure.contours import contour_tubes
 from pectinate.figure.frame import MARGIN
-from pectinate.figure.parts import Lines, Marker, Part, nearest_parts, normal_at, used_vertices
+from pectinate.figure.parts import (
+    Lines,
+    Marker,
+    Part,
+    nearest_parts,
+    normal_at,
+    resampled,
+    used_vertices,
+    values_at,
+)
 from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import FOLD_SIZE
 from pectinate.figure.shading import Style, light_settings
-from pectinate.figure.values import ColorScale, SurfaceValues, corner_values, range_of
+from pectinate.figure.triangles import Triangles
+from pectinate.figure.values import (
+    CategoryScale,
+    NamedValues,
+    Scale,
+    SurfaceValues,
+    corner_values,
+    make_scale,
+    shared_label,
+)
 from pectinate.figure.views import View, resolve_view
 from pectinate.figure.writing import ink_color
 from pectinate.viewer.encoding import (
@@ -26,11 +45,10 @@ from pectinate.viewer.encoding import (
     quantized_values,
 )
 
-# Tubes get a ring every so many radii; closer ones do not show.
-_RING_SPACING = 1.5
-# Nor are rings farther apart than this share of the taper length, so that the taper is followed.
-_TAPER_STEP = 0.5
 _COLOR_COUNT = 256
+
+_Scales: TypeAlias = dict[str, tuple[Scale, str]]
+_Numbers: TypeAlias = Callable[[SurfaceValues], NDArray[np.float64]]
 
 
 def describe_scene(
@@ -63,12 +81,13 @@ def describe_scene(
     vertices = [part.placed(used_vertices(part)) for part in parts]
     points = np.concatenate(vertices)
     pack = ArrayPack()
-    scales = _scales(parts)
+    scales, tube_scales = _scales_of_surfaces(parts), _scales_of_tubes(parts)
     scene = {
-        "parts": [_part(part, scales, pack, style) for part in parts],
+        "parts": [_part(part, (scales, tube_scales), pack, style) for part in parts],
         "markers": _markers(markers, parts),
         "views": [_view(resolve_view(view, points, axes)) for view in views],
         "scales": [_scale(name, scale, label, style) for name, (scale, label) in scales.items()],
+        "tube_scales": [_scale(name, scale, label, style) for name, (scale, label) in tube_scales.items()],
         "style": _style(style),
         "light": light_settings(),
         "fold_size": FOLD_SIZE * max(float(np.linalg.norm(np.ptp(some, axis=0))) for some in vertices),
@@ -77,34 +96,7 @@ def describe_scene(
     return scene, pack
 
 
-def resampled(lines: Lines) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Points at even distances along each line, its ends among them, as closely as tubes need them.
-
-    Returns
-    -------
-    points : (M, 3) float64
-        mm, one line after the other.
-    counts : (n,) int64
-        Points of each line, at least two.
-    """
-    if len(lines.offsets) < 2:  # noqa: PLR2004
-        return np.zeros((0, 3)), np.zeros(0, dtype=np.int64)
-    spacing = _RING_SPACING * lines.radius
-    if lines.taper_length > 0:
-        spacing = min(spacing, _TAPER_STEP * lines.taper_length)
-    steps = np.linalg.norm(np.diff(lines.points, axis=0), axis=1)
-    first, last = lines.offsets[:-1], lines.offsets[1:] - 1
-    # Whole numbers of lines apart, so that no line's samples reach into the next one.
-    steps[last[:-1]] = 1.0
-    arc = np.append(0.0, np.cumsum(steps))
-    counts = np.maximum(2, 1 + np.ceil((arc[last] - arc[first]) / spacing).astype(np.int64))
-    rank = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
-    share = rank / np.repeat(counts - 1, counts)
-    samples = np.repeat(arc[first], counts) * (1 - share) + np.repeat(arc[last], counts) * share
-    return np.column_stack([np.interp(samples, arc, lines.points[:, axis]) for axis in range(3)]), counts
-
-
-def _part(part: Part, scales: dict[str, tuple[ColorScale, str]], pack: ArrayPack, style: Style) -> dict[str, Any]:
+def _part(part: Part, scales: tuple[_Scales, _Scales], pack: ArrayPack, style: Style) -> dict[str, Any]:
     vertices, triangles = part.placed(part.surface[0]), np.asarray(part.surface[1])
     triangle_order, vertex_order = coherent_order(vertices, triangles)
     rank = np.zeros(len(vertices), dtype=np.int64)
@@ -115,68 +107,90 @@ def _part(part: Part, scales: dict[str, tuple[ColorScale, str]], pack: ArrayPack
         "triangles": pack.add(first_use_codes(rank[triangles[triangle_order]])),
     }
     values = []
-    for name, given in part.surface_values.items():
-        array = np.asarray(given.values if isinstance(given, SurfaceValues) else given, dtype=np.float64)
-        per_triangle = array.shape == (len(triangles),)
-        scale = scales[name][0]
-        steps = quantized_values(array[triangle_order if per_triangle else vertex_order], scale.low, scale.high)
-        values.append({"name": name, "per_triangle": per_triangle, "steps": pack.add(steps, differences=1)})
+    for name, (scale, _) in scales[0].items():
+        if name in part.surface_values:
+            given = SurfaceValues.of(part.surface_values[name])
+            array = np.asarray(given.values, dtype=np.float64)
+            per_triangle = array.shape == (len(triangles),)
+            steps = _steps(array[triangle_order if per_triangle else vertex_order], scale)
+            contours = _lines(contour_tubes(part.surface, given), part, {}, pack)
+            packed = pack.add(steps, differences=1)
+            values.append({"name": name, "per_triangle": per_triangle, "steps": packed, "contours": contours})
     return {
         "name": part.name,
         "visible": part.visible,
         "surface": surface,
         "surface_color": style.surface_color if part.surface_color is None else part.surface_color,
         "values": values,
-        "streamlines": _lines(part.streamlines, part, pack),
-        "tracts": _lines(part.tracts, part, pack),
+        "streamlines": _lines(part.streamlines, part, scales[1], pack),
+        "tracts": _lines(part.tracts, part, {}, pack),
     }
 
 
-def _lines(lines: Lines | None, part: Part, pack: ArrayPack) -> dict[str, Any] | None:
+def _lines(lines: Lines | None, part: Part, scales: _Scales, pack: ArrayPack) -> dict[str, Any] | None:
     if lines is None or len(lines.offsets) < 2:  # noqa: PLR2004
         return None
-    points, counts = resampled(lines)
+    points, places, counts = resampled(lines)
     positions, place = quantized_points(part.placed(points))
+    values = []
+    for name, (scale, _) in scales.items():
+        if name in lines.values:
+            given = values_at(SurfaceValues.of(lines.values[name]), places)
+            steps = _steps(np.asarray(given.values, dtype=np.float64), scale)
+            values.append({"name": name, "steps": pack.add(steps, differences=1)})
     return place | {
         "positions": pack.add(positions, differences=2),
         "counts": pack.add(counts.astype(np.uint32)),
         "radius": lines.radius,
         "taper_length": lines.taper_length,
+        "values": values,
     }
 
 
-def _scales(parts: Sequence[Part]) -> dict[str, tuple[ColorScale, str]]:
+def _scales_of_surfaces(parts: Sequence[Part]) -> _Scales:
+    return _scales([(part.surface_values, _corners_of(part.surface)) for part in parts])
+
+
+def _corners_of(surface: Triangles) -> _Numbers:
+    vertices, triangles = (np.asarray(array) for array in surface)
+    return lambda values: corner_values(values, triangles, len(vertices)).ravel()
+
+
+def _scales_of_tubes(parts: Sequence[Part]) -> _Scales:
+    lines = [part.streamlines for part in parts if part.streamlines is not None]
+    return _scales([(some.values, lambda values: np.asarray(values.values, dtype=np.float64)) for some in lines])
+
+
+def _scales(given: Sequence[tuple[NamedValues, _Numbers]]) -> _Scales:
     """Scale and label of each name of values: the first range, map and label that are given count for all parts."""
-    scales: dict[str, tuple[ColorScale, str]] = {}
-    for name in dict.fromkeys(name for part in parts for name in part.surface_values):
-        given = [(part, part.surface_values[name]) for part in parts if name in part.surface_values]
-        told = [values for _, values in given if isinstance(values, SurfaceValues)]
-        numbers = np.concatenate([_finite_values(part, values) for part, values in given])
-        ranges = [values.value_range for values in told if values.value_range is not None]
-        low, high = ranges[0] if ranges else range_of(numbers)
-        first = told[0] if told else SurfaceValues(())
-        scales[name] = (ColorScale(first.colormap, float(low), float(high)), first.label or name)
+    scales: _Scales = {}
+    for name in dict.fromkeys(name for values, _ in given for name in values):
+        told = [(SurfaceValues.of(values[name]), numbers_of) for values, numbers_of in given if name in values]
+        numbers = np.concatenate([numbers_of(values) for values, numbers_of in told])
+        shared = [values for values, _ in told]
+        scales[name] = make_scale(shared, numbers[np.isfinite(numbers)]), shared_label(shared, name)
     return scales
 
 
-def _finite_values(part: Part, values: SurfaceValues | ArrayLike) -> NDArray[np.float64]:
-    array = values.values if isinstance(values, SurfaceValues) else values
-    corners = corner_values(array, np.asarray(part.surface[1]), len(np.asarray(part.surface[0])))
-    return corners[np.isfinite(corners)]
+def _steps(numbers: NDArray[np.float64], scale: Scale) -> NDArray[np.uint16]:
+    """Numbers as whole steps of the colours that `_scale` lists."""
+    if isinstance(scale, CategoryScale):
+        indices = scale.indices(numbers)
+        return quantized_values(np.where(indices < 0, np.nan, indices + 0.5), 0.0, float(max(len(scale.numbers), 1)))
+    return quantized_values(numbers, scale.low, scale.high)
 
 
-def _scale(name: str, scale: ColorScale, label: str, style: Style) -> dict[str, Any]:
+def _scale(name: str, scale: Scale, label: str, style: Style) -> dict[str, Any]:
     shares = (np.arange(_COLOR_COUNT) + 0.5) / _COLOR_COUNT
-    colors = scale.colors(scale.low * (1 - shares) + scale.high * shares, style.no_value_color)
+    if isinstance(scale, CategoryScale):
+        palette = np.array([*scale.palette, style.no_value_color])
+        colors = palette[(shares * len(scale.numbers)).astype(np.int64)]
+        ends: dict[str, Any] = {"categories": scale.names, "low": 0, "high": 1, "ticks": []}
+    else:
+        colors = scale.colors(scale.low * (1 - shares) + scale.high * shares, style.no_value_color)
+        ends = {"low": scale.low, "high": scale.high, "ticks": scale.ticks()}
     rgb = np.rint(255 * colors).astype(np.uint8).tobytes()
-    return {
-        "name": name,
-        "label": label,
-        "low": scale.low,
-        "high": scale.high,
-        "ticks": scale.ticks(),
-        "colors": base64.b64encode(rgb).decode("ascii"),
-    }
+    return {"name": name, "label": label, "colors": base64.b64encode(rgb).decode("ascii"), **ends}
 
 
 def _markers(markers: Sequence[Marker], parts: Sequence[Part]) -> list[dict[str, Any]]:
@@ -201,6 +215,7 @@ def _style(style: Style) -> dict[str, Any]:
         "inside_color": style.inside_color,
         "tube_color": style.tube_color,
         "tract_color": style.tract_color,
+        "contour_color": style.contour_color,
         "no_value_color": style.no_value_color,
         "background_color": style.background_color,
         "ink_color": [channel / 255 for channel in ink_color(style)],

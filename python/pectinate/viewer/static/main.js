@@ -16,10 +16,10 @@ class Viewer {
     this.picture = new Picture(canvas, scene, context);
     this.overlay = new Overlay(scene);
     this.view = new View();
-    this.layers = { surface: true, streamlines: true, tracts: true, markers: true };
-    this.shownValues = -1;
+    this.layers = { surface: true, contours: true, streamlines: true, tracts: true, markers: true };
+    this.shownValues = this.shownTubeValues = -1;
     this.frameRequest = 0;
-    for (const scale of scene.scales) scale.bytes = Uint8Array.from(atob(scale.colors), (c) => c.charCodeAt(0));
+    for (const scale of [...scene.scales, ...scene.tube_scales]) scale.bytes = Uint8Array.from(atob(scale.colors), (c) => c.charCodeAt(0));
     this.parts = scene.parts.map((part) => this.buildPart(part, bytes));
   }
 
@@ -35,6 +35,7 @@ class Viewer {
       return this.picture.addTubes(geometry, color, style.tube_gloss, lines.radius);
     };
     const plain = plainGeometry(surface);
+    const withSteps = (values) => ({ ...values, steps: unpack(bytes, values.steps) });
     return {
       name: part.name,
       visible: part.visible,
@@ -42,7 +43,11 @@ class Viewer {
       clouds,
       plain,
       colored: null,
-      values: part.values.map((values) => ({ ...values, steps: unpack(bytes, values.steps) })),
+      values: part.values.map(withSteps),
+      tubeValues: part.streamlines ? part.streamlines.values.map(withSteps) : [],
+      contours: part.values.map((values) => values.contours && this.picture.addTubes(
+        buildTubes(bytes, values.contours), style.contour_color, 0, values.contours.radius, true,
+      )),
       mesh: this.picture.addSurface(plain, part.surface_color),
       streamlines: tubes(part.streamlines, style.tube_color),
       tracts: tubes(part.tracts, style.tract_color),
@@ -61,7 +66,7 @@ class Viewer {
   insets() {
     const panel = document.getElementById('panel').getBoundingClientRect();
     const [width] = this.size(), right = panel.width < FOLDED_WIDTH ? 0 : width - panel.left;
-    const left = this.shownValues >= 0 ? COLOR_BAR_ROOM : 0;
+    const left = COLOR_BAR_ROOM * this.keys().length;
     return [left, right].map((taken) => (taken < LARGEST_INSET * width ? taken : 0));
   }
 
@@ -91,6 +96,29 @@ class Viewer {
     this.requestDraw();
   }
 
+  // Index of a scale of the tubes; -1 shows no values.
+  showTubeValues(index) {
+    this.shownTubeValues = index;
+    const scale = this.scene.tube_scales[index];
+    for (const part of this.parts.filter(({ streamlines }) => streamlines)) {
+      const values = scale && part.tubeValues.find(({ name }) => name === scale.name);
+      if (values) colorTubes(part.streamlines.geometry, values.steps, scale, this.scene.style.no_value_color);
+      part.someTubesMissing = Boolean(values) && values.steps.includes(NO_VALUE);
+      part.streamlines.material.uniforms.showsValues.value = Boolean(values);
+    }
+    this.requestDraw();
+  }
+
+  // The scales in use, and whether what they colour lacks some values.
+  keys() {
+    const { scales, tube_scales: tubeScales } = this.scene;
+    const missing = (name) => this.parts.some((part) => part.visible && part[name]);
+    return [
+      { scale: scales[this.shownValues], someMissing: missing('someMissing') },
+      { scale: tubeScales[this.shownTubeValues], someMissing: missing('someTubesMissing') },
+    ].filter(({ scale }) => scale);
+  }
+
   // `factor` times the radius that each part came with.
   scaleTubes(factor) {
     for (const part of this.parts) {
@@ -113,15 +141,21 @@ class Viewer {
   // `ratio`: pixels of the picture across one of CSS.
   draw(ratio) {
     this.frameRequest = 0;
+    const keys = this.keys();
+    const shownName = (this.scene.scales[this.shownValues] || {}).name;
     for (const part of this.parts) {
       part.mesh.visible = part.visible && this.layers.surface;
       for (const layer of ['streamlines', 'tracts']) {
         if (part[layer]) part[layer].visible = part.visible && this.layers[layer];
       }
+      part.contours.forEach((mesh, index) => {
+        const shown = part.visible && this.layers.contours && part.values[index].name === shownName;
+        if (mesh) mesh.visible = shown;
+      });
     }
     const size = this.size();
     this.picture.resize(...size, ratio);
-    this.picture.draw(this.view, this.reach(), this.shownValues >= 0, this.layers.markers && this.scene.markers.length);
+    this.picture.draw(this.view, this.reach(), keys.length > 0, this.layers.markers && this.scene.markers.length);
     Object.assign(this.overlayCanvas, { width: size[0] * ratio, height: size[1] * ratio });
     this.drawOverlay(this.overlayCanvas.getContext('2d'), size, ratio);
   }
@@ -129,9 +163,7 @@ class Viewer {
   drawOverlay(context, size, ratio) {
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
     const markers = this.layers.markers ? this.visibleMarkers() : [];
-    const scale = this.scene.scales[this.shownValues];
-    const someMissing = this.parts.some((part) => part.visible && part.someMissing);
-    this.overlay.draw(context, size, { view: this.view, markers, scale, someMissing });
+    this.overlay.draw(context, size, { view: this.view, markers, keys: this.keys() });
   }
 
   // Farthest vertex from the middle of the picture, with room for tubes.
@@ -186,6 +218,7 @@ function fillPanel(panel, viewer, scene) {
   }
   const there = {
     surface: true,
+    contours: parts.some((part) => part.contours.some(Boolean)),
     streamlines: parts.some((part) => part.streamlines),
     tracts: parts.some((part) => part.tracts),
     markers: scene.markers.length > 0,
@@ -197,6 +230,11 @@ function fillPanel(panel, viewer, scene) {
     panel.heading('Colours');
     const names = ['none', ...scene.scales.map(({ label }) => label)];
     panel.choice('values', names, viewer.shownValues + 1, (index) => viewer.showValues(index - 1));
+  }
+  if (scene.tube_scales.length) {
+    panel.heading('Colours of streamlines');
+    const names = ['none', ...scene.tube_scales.map(({ label }) => label)];
+    panel.choice('tube values', names, viewer.shownTubeValues + 1, (index) => viewer.showTubeValues(index - 1));
   }
   if (there.streamlines) {
     const first = parts.find((part) => part.streamlines).radius;
@@ -238,6 +276,7 @@ async function start() {
   const bytes = await inflate(document.getElementById('arrays').textContent);
   const viewer = new Viewer(scene, bytes, canvas, document.getElementById('overlay'), context);
   if (scene.scales.length) viewer.showValues(scene.shown_values);
+  if (scene.tube_scales.length) viewer.showTubeValues(scene.shown_tube_values);
   fillPanel(new Panel(document.getElementById('panel'), scene.title), viewer, scene);
   viewer.look(0);
   followPointers(canvas, viewer.view, () => viewer.requestDraw());

@@ -13,13 +13,18 @@ class Overlay {
   }
 
   // `size` in CSS pixels; the context is scaled to them.
-  draw(context, size, { view, markers, scale, someMissing }) {
+  // `keys`: the scales that colour surfaces and tubes, with whether some values are missing.
+  draw(context, size, { view, markers, keys }) {
     context.font = `${LETTERS}px system-ui, sans-serif`;
     context.lineWidth = 1.2;
     context.textBaseline = 'middle';
     for (const { place, text } of markers) this.marker(context, size, place, text);
     this.scaleBar(context, size, view.mmPerPixel);
-    if (scale) this.colorBar(context, size, scale, someMissing);
+    keys.forEach(({ scale, someMissing }, index) => {
+      const left = 16 + index * COLOR_BAR_ROOM;
+      if (scale.categories) this.legend(context, size, scale, someMissing, left);
+      else this.colorBar(context, size, scale, someMissing, [left, 16 + 18 * index]);
+    });
   }
 
   marker(context, [width, height], [x, y], text) {
@@ -48,8 +53,9 @@ class Overlay {
     this.write(context, `${Number(mm.toPrecision(1))} mm`, 16 + 0.5 * pixels, height - 31);
   }
 
-  colorBar(context, [, height], scale, someMissing) {
-    const rows = Math.round(Math.min(0.5 * height, 320)), top = Math.round(0.5 * (height - rows)), left = 16;
+  // The label is `above` the bar, so far that those of two bars do not touch.
+  colorBar(context, [, height], scale, someMissing, [left, above]) {
+    const rows = Math.round(Math.min(0.5 * height, 320)), top = Math.round(0.5 * (height - rows));
     for (let row = 0; row < rows; row++) {
       const entry = 3 * Math.floor((256 * (rows - 1 - row + 0.5)) / rows);
       context.fillStyle = `rgb(${scale.bytes.subarray(entry, entry + 3).join()})`;
@@ -62,12 +68,33 @@ class Overlay {
       context.fillRect(left + BAR_WIDTH, y - 0.5, 4, 1);
       this.write(context, String(Number(tick.toPrecision(6))), left + BAR_WIDTH + 8, y);
     }
-    this.write(context, scale.label, left, top - 16);
-    if (!someMissing) return;
-    context.fillStyle = this.noValue;
-    context.fillRect(left, top + rows + 10, BAR_WIDTH, BAR_WIDTH);
+    this.write(context, scale.label, left, top - above);
+    if (someMissing) this.box(context, this.noValue, 'none', left, top + rows + 10);
+  }
+
+  // The names of categories beside their colours.
+  legend(context, [, height], scale, someMissing, left) {
+    const { categories, bytes } = scale, line = BAR_WIDTH + 6;
+    const entries = categories.map((name, index) => {
+      const entry = 3 * Math.floor((256 * (index + 0.5)) / categories.length);
+      return [`rgb(${bytes.subarray(entry, entry + 3).join()})`, name];
+    });
+    if (someMissing) entries.push([this.noValue, 'none']);
+    let top = Math.round(0.5 * (height - line * entries.length));
+    context.textAlign = 'left';
     context.fillStyle = this.ink;
-    this.write(context, 'none', left + BAR_WIDTH + 8, top + rows + 10 + 0.5 * BAR_WIDTH);
+    this.write(context, scale.label, left, top - 12);
+    for (const [color, name] of entries) {
+      this.box(context, color, name, left, top);
+      top += line;
+    }
+  }
+
+  box(context, color, text, left, top) {
+    context.fillStyle = color;
+    context.fillRect(left, top, BAR_WIDTH, BAR_WIDTH);
+    context.fillStyle = this.ink;
+    this.write(context, text, left + BAR_WIDTH + 8, top + 0.5 * BAR_WIDTH);
   }
 
   // Ink with a rim of paper, so that it can be read on the surface too.

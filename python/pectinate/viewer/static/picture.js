@@ -36,9 +36,10 @@ class Picture {
     }, THREE.DoubleSide, this.defines()), [0, SURFACE_LAYER]);
   }
 
-  addTubes(geometry, color, gloss, radius) {
+  addTubes(geometry, color, gloss, radius, calm = false) {
     return this.add(geometry, material(TUBE_VERTEX, TUBE_FRAGMENT, {
       ...this.uniforms, tubeColor: { value: color }, tubeGloss: { value: gloss }, radius: { value: radius },
+      showsValues: { value: false }, calm: { value: calm },
     }, THREE.FrontSide, this.defines()), [0]);
   }
 

@@ -14,9 +14,9 @@ const LIGHT_FUNCTIONS = `
     return brightness * (1.0 - edge * turnedAway * turnedAway * turnedAway);
   }
 
-  float valueLight(vec3 n) {
-    float facing = light(vec3(0.0, 0.0, 1.0), edgeDarkness);
-    return 1.0 - valueShade * max(1.0 - light(n, edgeDarkness) / facing, 0.0);
+  float valueLight(vec3 n, float edge) {
+    float facing = light(vec3(0.0, 0.0, 1.0), edge);
+    return 1.0 - valueShade * max(1.0 - light(n, edge) / facing, 0.0);
   }
 
   float gloss(vec3 n) {
@@ -72,7 +72,7 @@ const SURFACE_FRAGMENT = `${LIGHT_FUNCTIONS}${FOLD_FUNCTIONS}
     vec3 n = normalize(vNormal);
     vec3 color;
     if (!gl_FrontFacing) color = insideColor * light(-n, edgeDarkness);
-    else if (showsValues) color = vColor * valueLight(n);
+    else if (showsValues) color = vColor * valueLight(n, edgeDarkness);
     else color = surfaceColor * light(n, edgeDarkness);
     gl_FragColor = vec4(clamp(color, 0.0, 1.0) * foldShadow(), 1.0);
   }`;
@@ -80,15 +80,17 @@ const SURFACE_FRAGMENT = `${LIGHT_FUNCTIONS}${FOLD_FUNCTIONS}
 // A tube's vertex is its centre and a unit vector away from it; the radius comes last. Its light is computed at the
 // vertices, as in the pictures: highlights on dark tubes become broad and calm.
 const TUBE_VERTEX = `${LIGHT_FUNCTIONS}
-  attribute vec3 offset;
+  attribute vec3 offset, valueColor;
   attribute float thickness;
+  uniform bool showsValues, calm;
   uniform float radius;
   uniform vec3 tubeColor;
   uniform float tubeGloss;
   varying vec3 vColor;
   void main() {
     vec3 n = normalize(normalMatrix * offset);
-    vColor = clamp(tubeColor * light(n, 0.0) + tubeGloss * gloss(n), 0.0, 1.0);
+    if (showsValues || calm) vColor = (showsValues ? valueColor : tubeColor) * valueLight(n, 0.0);
+    else vColor = clamp(tubeColor * light(n, 0.0) + tubeGloss * gloss(n), 0.0, 1.0);
     gl_Position = projectionMatrix * modelViewMatrix * vec4(position + radius * thickness * offset, 1.0);
   }`;
 

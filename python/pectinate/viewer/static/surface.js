@@ -47,11 +47,17 @@ function coloredGeometry(surface, values, steps, scale, missing) {
   for (let i = 0; i < corners.length; i++) {
     const first = i - (i % 3);
     const known = ![0, 1, 2].some((k) => atCorner(first + k) === NO_VALUE);
-    const entry = known ? 3 * Math.min(255, Math.floor((256 * atCorner(i)) / (NO_VALUE - 1))) : 0;
-    for (let k = 0; k < 3; k++) colors[3 * i + k] = known ? scale.bytes[entry + k] : 255 * missing[k];
+    colors.set(colorOf(known ? atCorner(i) : NO_VALUE, scale, missing), 3 * i);
   }
   geometry.setAttribute('valueColor', new THREE.BufferAttribute(colors, 3, true));
   return geometry;
+}
+
+// Red, green and blue, 0 to 255, of a step of values.
+function colorOf(step, scale, missing) {
+  if (step === NO_VALUE) return missing.map((channel) => Math.round(255 * channel));
+  const entry = 3 * Math.min(255, Math.floor((256 * step) / (NO_VALUE - 1)));
+  return scale.bytes.subarray(entry, entry + 3);
 }
 
 function perCorner(table, corners) {

@@ -13,7 +13,7 @@ function buildTubes(bytes, description) {
   const rings = new Rings(points.length / 3 + extraRings * counts.length);
   let first = 0;
   for (const count of counts) {
-    addTube(rings, points.subarray(3 * first, 3 * (first + count)), description.taper_length);
+    addTube(rings, points.subarray(3 * first, 3 * (first + count)), description.taper_length, first);
     first += count;
   }
   return rings.geometry();
@@ -25,13 +25,15 @@ class Rings {
     this.centres = new Float32Array(3 * count * SIDE_COUNT);
     this.offsets = new Int8Array(4 * count * SIDE_COUNT);
     this.thicknesses = new Float32Array(count * SIDE_COUNT);
+    this.points = new Uint32Array(count);
     this.corners = new Uint32Array(6 * count * SIDE_COUNT);
     this.vertexCount = this.cornerCount = 0;
   }
 
-  // `lean` is the angle of the offsets towards the tangent: not 0 at round ends only.
-  add(centre, frame, thickness, lean, begins) {
+  // `lean` is the angle of the offsets towards the tangent: not 0 at round ends only. `index` is that of the point.
+  add(centre, frame, thickness, lean, begins, index) {
     const start = this.vertexCount;
+    this.points[start / SIDE_COUNT] = index;
     const [across, along] = [Math.cos(lean), Math.sin(lean)];
     for (let side = 0; side < SIDE_COUNT; side++) {
       const angle = (2 * Math.PI * side) / SIDE_COUNT;
@@ -60,11 +62,12 @@ class Rings {
     geometry.setAttribute('position', new THREE.BufferAttribute(this.centres, 3));
     geometry.setAttribute('offset', new THREE.BufferAttribute(this.offsets, 4, true));
     geometry.setAttribute('thickness', new THREE.BufferAttribute(this.thicknesses, 1));
+    geometry.userData.points = this.points;
     return geometry;
   }
 }
 
-function addTube(rings, points, taperLength) {
+function addTube(rings, points, taperLength, first) {
   const count = points.length / 3;
   const point = (i) => [points[3 * i], points[3 * i + 1], points[3 * i + 2]];
   const arcs = [0];
@@ -78,11 +81,24 @@ function addTube(rings, points, taperLength) {
     const frame = { tangent, side, other: cross(tangent, side) };
     if (taperLength > 0) {
       // Equation (3) of the paper.
-      rings.add(point(i), frame, rise(arcs[i]) * rise(total - arcs[i]), 0, i === 0);
+      rings.add(point(i), frame, rise(arcs[i]) * rise(total - arcs[i]), 0, i === 0, first + i);
     } else {
-      for (const lean of leans(i, count)) rings.add(point(i), frame, 1, lean, i === 0 && lean === -0.5 * Math.PI);
+      for (const lean of leans(i, count)) {
+        rings.add(point(i), frame, 1, lean, i === 0 && lean === -0.5 * Math.PI, first + i);
+      }
     }
   }
+}
+
+// Colours of the vertices, from steps of values at the points of the lines.
+function colorTubes(geometry, steps, scale, missing) {
+  const { points } = geometry.userData;
+  const colors = new Uint8Array(3 * SIDE_COUNT * points.length);
+  for (let ring = 0; ring < points.length; ring++) {
+    const color = colorOf(steps[points[ring]], scale, missing);
+    for (let side = 0; side < SIDE_COUNT; side++) colors.set(color, 3 * (SIDE_COUNT * ring + side));
+  }
+  geometry.setAttribute('valueColor', new THREE.BufferAttribute(colors, 3, true));
 }
 
 function leans(i, count) {
