@@ -17,15 +17,23 @@ from pectinate import _core
 from pectinate.angle_statistics import angle_statistics, angle_statistics_per_region
 from pectinate.checks import one_of, quoted, real, whole
 from pectinate.errors import InvalidField, InvalidOption
+from pectinate.figure.cells import Cell, figure_sheet
+from pectinate.figure.files import check_picture_path
+from pectinate.figure.frame import middle
+from pectinate.figure.parts import used_vertices
+from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.values import SurfaceValues
+from pectinate.figure.views import View, resolve_view
 from pectinate.io import load, save_surface
 from pectinate.loops import LoopChoice, find_loop
 from pectinate.model import Model
 from pectinate.parameterization import DiskMap, parameterize
+from pectinate.placement import place_streamlines
 
 How = Literal["same", "nearest", "disks"]
 HOW: tuple[How, ...] = ("same", "nearest", "disks")
 
+_ANGLE = "angle"
 _SAME_POSITION = 1e-6  # of the bounding box's diagonal
 
 
@@ -45,6 +53,8 @@ class Comparison:
         (T,) int64; None without.
     how
         "same", "nearest" or "disks".
+    first, second
+        The models that were compared.
     """
 
     model: Model
@@ -52,6 +62,8 @@ class Comparison:
     distances: NDArray[np.float64] | None
     regions: NDArray[np.int64] | None
     how: str
+    first: Model
+    second: Model
 
     def save(self, path: str | os.PathLike[str], **options: Any) -> list[Path]:
         """Write surface and carried field as `pectinate.save_surface` does; VTK files with `angle`, radians.
@@ -78,8 +90,57 @@ class Comparison:
         InvalidOption, InvalidFile, RenderingUnavailable, MissingDependency
             As `Placement.figure`.
         """
-        values = SurfaceValues(np.degrees(self.angles), value_range=(0, 90), label="angle, degrees")
-        return self.model.figure(path, **{"surface_values": values, **sheet_options})
+        return self.model.figure(path, **{"surface_values": self._degrees(), **sheet_options})
+
+    def sheet(
+        self,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        views: str | View | Sequence[str | View] = ("anterior", "posterior"),
+        axes: str | PatientAxes = "LPS",
+        names: tuple[str, str] = ("first", "second"),
+        separation_distance: float | None = None,
+        **sheet_options: Any,
+    ) -> Image.Image:
+        """Draw both models with their streamlines side by side, and the second one coloured by the angle, in degrees.
+
+        All pictures have one scale, and those of a row look from the same side at the same place; with how="disks",
+        for which surfaces need not lie at the same place, each is in the middle of its own picture.
+
+        Parameters
+        ----------
+        path
+            Where to write the sheet; by default nowhere.
+        views, axes
+            As in `pectinate.figure.draw_sheet`; a row for each view.
+        names
+            Of the first and of the second model, above their columns.
+        separation_distance
+            Of the streamlines, mm; by default that of `place_streamlines`.
+        sheet_options
+            Of `pectinate.figure_sheet`: `size`, `title`, `style`, ...
+
+        Raises
+        ------
+        InvalidOption, InvalidFile, RenderingUnavailable, MissingDependency
+            As `figure_sheet`.
+        """
+        check_picture_path(path)
+        placing: dict[str, Any] = {} if separation_distance is None else {"separation_distance": separation_distance}
+        parts = [place_streamlines(model, **placing).part() for model in (self.first, self.second)]
+        parts.append(self.second.part(surface_values={_ANGLE: self._degrees()}))
+        points = np.concatenate([used_vertices(part) for part in parts])
+        rows, row_titles = [], []
+        for view in [views] if isinstance(views, str | View) else views:
+            looking = resolve_view(view, points, axes)
+            centre = None if self.how == "disks" else middle(points, looking)
+            rows.append([Cell(part, looking, centre=centre) for part in parts])
+            row_titles.append(looking.name)
+        titles = {"row_titles": row_titles, "column_titles": [*names, "angle between them"]}
+        return figure_sheet(rows, path, **{"shown_values": _ANGLE, **titles, **sheet_options})
+
+    def _degrees(self) -> SurfaceValues:
+        return SurfaceValues(np.degrees(self.angles), value_range=(0, 90), label="angle, degrees")
 
     def report(self) -> dict[str, Any]:
         """Statistics of the angles, of all triangles and per region, ready for JSON; in degrees, distances in mm."""
@@ -160,6 +221,8 @@ def compare(  # noqa: PLR0913
         distances=distances,
         regions=target.tags if regions is None else _regions(target, regions),
         how=how,
+        first=source,
+        second=target,
     )
 
 

@@ -112,8 +112,12 @@ def _add_compare(subparsers: argparse._SubParsersAction[Parser]) -> None:
         help="inner loops of the first and second surface that correspond; may be repeated",
     )
     _add_files(parser)
-    parser.add_argument("--figure", type=Path, metavar="FILE", help="picture of the angles, such as f.png")
-    add_views(parser)
+    group = parser.add_argument_group("picture")
+    words = "picture of both with their streamlines, and of the angles between them, such as f.png"
+    group.add_argument("--figure", type=Path, metavar="FILE", help=words)
+    group.add_argument("--angles-only", action="store_true", help="picture of the angles alone")
+    add_views(group)
+    group.add_argument("--separation", dest="separation_distance", type=float, metavar="MM", help="of the streamlines")
     add_common(parser)
 
 

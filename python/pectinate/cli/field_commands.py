@@ -89,11 +89,21 @@ def compare(arguments: argparse.Namespace) -> None:
     outer_loops = (arguments.outer_first, arguments.outer_second)
     result = pectinate.compare(*models, outer_loops=outer_loops, **given(arguments, _COMPARISON))
     written = _save(result, arguments)
-    if arguments.figure is not None:
-        with writing():
-            result.figure(arguments.figure, **given(arguments, {"views": "views"}))
+    _draw_comparison(result, arguments)
     found = result.report()
     _print(arguments, field_report.comparison_rows(found), {"comparison": found}, written)
+
+
+def _draw_comparison(result: Comparison, arguments: argparse.Namespace) -> None:
+    if arguments.figure is None:
+        return
+    with writing():
+        if arguments.angles_only:
+            result.figure(arguments.figure, **given(arguments, {"views": "views"}))
+        else:
+            names = arguments.first.stem, arguments.second.stem
+            options = given(arguments, {"views": "views", "separation_distance": "separation_distance"})
+            result.sheet(arguments.figure, names=names, **options)
 
 
 def _tracts_of_two(arguments: argparse.Namespace) -> Sequence[Path | None]:
@@ -111,7 +121,10 @@ def _tracts_of_two(arguments: argparse.Namespace) -> Sequence[Path | None]:
 def _check_outputs(arguments: argparse.Namespace) -> None:
     """Refuse what cannot be written, and what is said of files that are not asked for, before any long work."""
     _check_serves(arguments, "--out", arguments.outputs, {"second_vectors": "--second", "per_vertex": "--per-vertex"})
-    _check_serves(arguments, "--figure", arguments.figure, {"views": "--views", "separation_distance": "--separation"})
+    of_figure = {"views": "--views", "separation_distance": "--separation", "angles_only": "--angles-only"}
+    _check_serves(arguments, "--figure", arguments.figure, of_figure)
+    if getattr(arguments, "angles_only", False) and arguments.separation_distance is not None:
+        raise UsageError("--separation is of streamlines, which --angles-only leaves out; give one of them")
     check_suffixes("--out", arguments.outputs, _SUFFIXES)
     check_figure(arguments)
     check_folders(arguments.outputs if arguments.figure is None else [*arguments.outputs, arguments.figure])
