@@ -2,19 +2,21 @@
 
 The figures are those of the paper: the fibres of both atria (Fig. 8) and, on the demo atrium, how the reference
 orientation comes about (Fig. 3), how a few tracts make a field step by step (Fig. 4), what noise does to streamlines,
-and smoothing to noise (Fig. 10).
+and smoothing to noise (Fig. 10). Others show values on surfaces and tubes, and two fields side by side.
 """
 
 from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
 import pectinate
+from activation import activation_values
 from demo_fields import DemoFields, streamline_layer
 from pectinate import _core
 from pectinate.datasets.sheets import AtrialFibres, fibre_sheet
@@ -29,6 +31,10 @@ LENS = (0.02, 0.03, 0.32)
 ANTERIOR = View("anterior", (0, 1, 0), (0, 0, 1))
 POSTERIOR = View("posterior", (0, -1, 0), (0, 0, 1))
 APPENDAGE = View("from the left and above", (-0.75, 0.6, -0.25), (0, 0, 1))
+# Where a sinus beat reaches the left atrium: over Bachmann's bundle, in front above.
+SINUS_BREAKTHROUGH = (-20.0, -22.0, 22.0)
+# By tag: the body, the pulmonary veins (left superior, ...), the appendage.
+REGIONS = ("body", "LSPV", "LIPV", "RSPV", "RIPV", "LAA")
 TRACT_GROUPS = ("Bachmann", "septopulmonary", "T,", "appendage")
 SHADES = 64
 # Four edges: noise that differs from triangle to triangle.
@@ -135,6 +141,30 @@ def values() -> Image.Image:
     )
 
 
+def activation() -> Image.Image:
+    """Activation times with isochrones under streamlines; streamlines in their colours, and in those of regions."""
+    model = pectinate.datasets.demo_atrium()
+    placement = pectinate.place_streamlines(model, separation_distance=1.6)
+    times = activation_values(model, SINUS_BREAKTHROUGH)
+    look = {"views": ["anterior", "posterior", "superior"], "size": (430, 370)}
+    regions = SurfaceValues(model.tags, categories=dict(enumerate(REGIONS)), label="region")
+    return rows(
+        [panel("A", placement.figure(surface_values=times, **look))],
+        [panel("B", placement.figure(tube_values=replace(times, contours=None), **look))],
+        [panel("C", placement.figure(tube_values=regions, **look))],
+    )
+
+
+def comparison() -> Image.Image:
+    """The field from tracts, what smoothing leaves of it with noise of 10 degrees, and the angle between both."""
+    demo = DemoFields()
+    clean = demo.model.with_field(demo.interpolate(demo.constraints(TRACT_GROUPS)).field, "from tracts")
+    smoothed = pectinate.smooth(pectinate.add_noise(clean, np.radians(10)), length=SMOOTHING_LENGTH).model
+    names = ("from tracts", "with noise, smoothed")
+    compared = pectinate.compare(clean, smoothed)
+    return compared.sheet(views=[ANTERIOR, POSTERIOR], names=names, separation_distance=2.4, size=(430, 370))
+
+
 def noisy(demo: DemoFields, field: _core.OrientationField, degrees: float) -> _core.OrientationField:
     """The field with normal noise of a standard deviation in degrees."""
     return _core.add_angular_noise(demo.mesh, field, standard_deviation=np.radians(degrees))
@@ -187,6 +217,8 @@ PICTURES: dict[str, Callable[[], Image.Image]] = {
     "interpolation_steps": steps,
     "noise_and_smoothing": noise,
     "values": values,
+    "activation": activation,
+    "comparison": comparison,
 }
 
 

@@ -15,7 +15,9 @@ from pectinate.figure.values import SurfaceValues
 
 _MOST_LEVELS = 500
 # Of the tubes that contours are drawn as, as a share of the surface's diagonal.
-_RADIUS = 1 / 550
+_RADIUS = 1 / 700
+# Their middle is this many radii above the surface, so that they cross streamlines above them.
+_LIFT = 2
 # Contours no longer than this many radii are not drawn: they would be dots.
 _SHORTEST = 6
 
@@ -97,7 +99,9 @@ def contour_tubes(surface: Triangles, given: SurfaceValues) -> Lines | None:
         return None
     vertices, triangles = np.asarray(surface[0], dtype=np.float64), np.asarray(surface[1])
     radius = _RADIUS * float(np.linalg.norm(np.ptp(vertices[np.unique(triangles)], axis=0)))
-    lifted = [line.points + radius * line.normals for line in contour_lines(surface, given.values, given.contours)]
+    lifted = [
+        line.points + _LIFT * radius * line.normals for line in contour_lines(surface, given.values, given.contours)
+    ]
     drawn = [points for points in lifted if _length(points) > _SHORTEST * radius]
     if not drawn:
         return None
