@@ -71,9 +71,13 @@ std::vector<PolylinePoint> polyline(const SurfaceMesh& mesh, const Placement& pl
   return points;
 }
 
-PolylinePoint between(const PolylinePoint& a, const PolylinePoint& b, double w) {
-  return {(1 - w) * a.place + w * b.place, (1 - w) * a.normal + w * b.normal, (1 - w) * a.arc + w * b.arc,
-          (1 - w) * a.point + w * b.point};
+/// Where on its streamline a place at some length from the start is, as in Tubes::vertex_points.
+double point_at(const std::vector<PolylinePoint>& points, double arc) {
+  const auto after = std::ranges::upper_bound(points, arc, {}, &PolylinePoint::arc);
+  if (after == points.begin()) return points.front().point;
+  if (after == points.end()) return points.back().point;
+  const auto& before = *std::prev(after);
+  return before.point + (arc - before.arc) / (after->arc - before.arc);
 }
 
 /// Fills long segments so that the taper is followed, and leaves out points too close for rings. The two ends stay.
@@ -87,7 +91,11 @@ std::vector<PolylinePoint> resample(const std::vector<PolylinePoint>& points, co
     if (!is_last && (points[p].arc - kept.back().arc < shortest || length - points[p].arc < shortest)) continue;
     const auto from = kept.back();
     const auto pieces = static_cast<int>(std::ceil((points[p].arc - from.arc) / longest - 1e-9));
-    for (int k = 1; k < pieces; ++k) kept.push_back(between(from, points[p], static_cast<double>(k) / pieces));
+    for (int k = 1; k < pieces; ++k) {
+      const double w = static_cast<double>(k) / pieces, arc = (1 - w) * from.arc + w * points[p].arc;
+      kept.push_back({(1 - w) * from.place + w * points[p].place, (1 - w) * from.normal + w * points[p].normal, arc,
+                      point_at(points, arc)});
+    }
     kept.push_back(points[p]);
   }
   return kept;

@@ -139,6 +139,27 @@ TEST_CASE("tubes: of placed streamlines they are watertight and face outwards, w
   }
 }
 
+TEST_CASE("tubes: each vertex is at the point of its streamline that the line reaches there") {
+  const auto mesh = sphere(3, 2).mesh();
+  // Points at uneven distances, some too close for a ring of their own.
+  const std::vector<double> stops{0, 0.5, 0.5001, 2.5, 2.5003, 2.6, 7};
+  std::vector<Vec3> line;
+  for (const double x : stops) line.push_back({x, 0, 0});
+  const auto placement = drawn({straight(3, 1), line});
+  for (const TubeOptions options : {TubeOptions{0.05, 0.6, 8}, {0.05, 0, 5}, {0.05, 20, 3}}) {
+    const auto tubes = make_tubes(mesh, placement, options);
+    REQUIRE(tubes.vertex_points.size() == tubes.vertices.size());
+    for (std::size_t v = 0; v < tubes.vertices.size(); ++v) {
+      const auto point = tubes.vertex_points[v];
+      const auto p = std::min(static_cast<std::size_t>(point), placement.points.size() - 2);
+      const double share = point - static_cast<double>(p);
+      const double x = (1 - share) * placement.points[p][0] + share * placement.points[p + 1][0];
+      CHECK(tubes.vertices[v][0] == doctest::Approx(x).epsilon(1e-9));
+      CHECK((point >= 4) == (static_cast<std::int64_t>(v) >= tubes.vertex_offsets[1]));
+    }
+  }
+}
+
 TEST_CASE("tubes: every ring has the radius of equation (3) around a point of the line") {
   const auto mesh = sphere(3, 2).mesh();
   const auto placement = placed(mesh, smooth_field(mesh), 0.4);
