@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import pectinate
 from command_line import check_error, run_json
@@ -115,6 +116,21 @@ def test_compare_reports_angles_per_region(square, tmp_path, capsys):
     assert "distance" in printed
 
 
+@pytest.mark.usefixtures("opengl")
+def test_compare_draws_both_models_or_the_angles_alone(square, tmp_path, capsys):
+    pytest.importorskip("matplotlib")
+    both, angles = tmp_path / "both.png", tmp_path / "angles.png"
+    words = ["compare", square, square, "--views", "superior", "--figure"]
+    report = run_json(capsys, *words, both, "--separation", "4")
+    assert report["files"] == [str(both)]
+    run_json(capsys, *words, angles, "--angles-only")
+    compared = pectinate.compare(square, square)
+    drawn = compared.sheet(views=["superior"], names=("square", "square"), separation_distance=4)
+    for path, picture in ((both, drawn), (angles, compared.figure(views=["superior"]))):
+        with Image.open(path) as written:
+            assert np.array_equal(np.asarray(written), np.asarray(picture))
+
+
 @needs_map
 def test_compare_by_disks_names_loops(tmp_path, capsys):
     surfaces, drawings = [], []
@@ -172,6 +188,12 @@ def single_triangle_field():
         (["smooth", "SQUARE", "--per-vertex"], ExitCode.USAGE, "--per-vertex serves --out alone"),
         (["smooth", "SQUARE", "--separation", "2"], ExitCode.USAGE, "--separation serves --figure alone"),
         (["compare", "SQUARE", "SQUARE", "--views", "left"], ExitCode.USAGE, "--views serves --figure alone"),
+        (["compare", "SQUARE", "SQUARE", "--angles-only"], ExitCode.USAGE, "--angles-only serves --figure alone"),
+        (
+            ["compare", "SQUARE", "SQUARE", "--figure", "FOLDER/f.png", "--angles-only", "--separation", "2"],
+            ExitCode.USAGE,
+            "--separation is of streamlines",
+        ),
         (["interpolate", "SQUARE", "TRACTS", "--out", "FOLDER/f.ply"], ExitCode.USAGE, ".ply"),
         (["interpolate", "SQUARE", "TRACTS", "--out", "FOLDER/none/f.lon"], ExitCode.FAILED, "no folder"),
         (["interpolate", "SQUARE", "TRACTS", "--maximum-distance", "-1"], ExitCode.USAGE, "--maximum-distance is -1"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import json
 import math
 from dataclasses import replace
@@ -11,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
+from PIL import Image
 
 import pectinate
 from marks import needs_map
@@ -18,6 +20,7 @@ from meshes import Mesh, grid, octahedron, two_components, with_hole
 from pectinate import Model, add_noise, compare
 from pectinate.angle_statistics import angle_statistics, angle_statistics_per_region
 from pectinate.errors import InvalidField, InvalidMesh, InvalidOption
+from pectinate.figure import Style, View
 
 
 def with_angle(mesh: Mesh, degrees: float) -> Model:
@@ -187,3 +190,78 @@ def test_statistics_of_any_angles(angles):
     regions = np.arange(len(angles)) % 2
     parts = angle_statistics_per_region(angles, regions)
     assert sum(part["count"] for part in parts.values()) == found["count"]
+
+
+ABOVE = View("above", (0, 0, -1), (0, 1, 0))
+SIZE = (200, 160)
+OF_SHEET = {
+    "views": ABOVE,
+    "size": SIZE,
+    "scale_bar": False,
+    "separation_distance": 1.5,
+    "style": Style(fold_darkness=0),
+}
+
+
+def columns_of(sheet: Image.Image) -> list[np.ndarray]:
+    """The three pictures of a sheet of one view."""
+    left, top = (round(0.09 * SIZE[1]),) * 2
+    pixels = np.asarray(sheet)[top : top + SIZE[1], left:]
+    return [pixels[:, k * SIZE[0] : (k + 1) * SIZE[0]] for k in range(3)]
+
+
+@pytest.mark.usefixtures("opengl")
+def test_a_sheet_shows_both_models_and_the_angle_between_them():
+    pytest.importorskip("matplotlib")
+    mesh = grid(10, 8)
+    first, second = with_angle(mesh, 0), with_angle(mesh, 60)
+    shown, other, angle = columns_of(compare(first, second).sheet(**OF_SHEET))
+    expected = 255 * np.array(importlib.import_module("matplotlib").colormaps["viridis"](60 / 90))[:3]
+    assert np.abs(angle[60:100, 80:120].astype(float) - expected).max() <= 2
+    # Shared camera: the outline of all three is the same, but for tubes that stick out.
+    outlines = [(picture != 255).any(axis=2) for picture in (shown, other, angle)]
+    for outline in outlines[:2]:
+        assert (outline & outlines[2]).sum() == outlines[2].sum()
+        assert (outline & ~outlines[2]).sum() < 0.05 * outlines[2].sum()
+    # Streamlines along x cross few rows, and those at 60 degrees many.
+    dark = [(picture.max(axis=2) < 110) for picture in (shown, other)]
+    assert dark[0].any(axis=1)[25:-25].mean() < 0.75
+    assert dark[1].any(axis=1)[25:-25].all()
+    same = columns_of(compare(first, first).sheet(**OF_SHEET))
+    assert np.array_equal(same[0], same[1])
+    assert np.abs(same[2][60:100, 80:120].astype(float) - [68, 1, 84]).max() <= 2
+
+
+@pytest.mark.usefixtures("opengl")
+def test_surfaces_at_their_places_share_a_camera_and_those_of_disks_do_not_need_to():
+    pytest.importorskip("matplotlib")
+    vertices, triangles = grid(10, 8)
+    first, second = with_angle((vertices, triangles), 0), with_angle((vertices + np.array([4.0, 0, 0]), triangles), 30)
+    near = compare(first, second, how="nearest")
+    middles = [np.nonzero((p != 255).any(axis=2))[1].mean() for p in columns_of(near.sheet(**OF_SHEET))]
+    assert middles[1] == pytest.approx(middles[2], abs=1)
+    pixels_per_mm = 0.94 * SIZE[0] / 14
+    assert middles[1] - middles[0] == pytest.approx(4 * pixels_per_mm, abs=2)
+    apart = replace(near, how="disks")
+    middles = [np.nonzero((p != 255).any(axis=2))[1].mean() for p in columns_of(apart.sheet(**OF_SHEET))]
+    assert np.ptp(middles) <= 1.5
+
+
+@pytest.mark.usefixtures("opengl")
+def test_a_sheet_where_directions_are_missing_and_bad_options(tmp_path):
+    pytest.importorskip("matplotlib")
+    mesh = grid(6, 6)
+    left = mesh[0][mesh[1]].mean(axis=1)[:, 0] < 3
+    half = pectinate.load((*mesh, np.where(left[:, None], 0.0, [1.0, 0, 0])))
+    *_, angle = columns_of(compare(half, with_angle(mesh, 30)).sheet(**OF_SHEET))
+    grey = np.rint(255 * np.array(Style().no_value_color))
+    assert np.abs(angle[60:100, 60:90] - grey).max() <= 1
+    assert (np.ptp(angle[60:100, 110:140].astype(int), axis=2) > 30).all()
+    compared = compare(half, half)
+    for options in ({"views": []}, {"views": "front"}, {"separation_distance": -1.0}, {"names": ("a", "b", "c")}):
+        with pytest.raises(InvalidOption):
+            compared.sheet(**{**OF_SHEET, **options})
+    with pytest.raises(InvalidOption, match=r"\.png"):
+        compared.sheet("sheet.docx")
+    compared.sheet(tmp_path / "sheet.png", **OF_SHEET)
+    assert (tmp_path / "sheet.png").exists()

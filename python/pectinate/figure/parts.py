@@ -254,11 +254,12 @@ def _check_point_values(name: str, given: SurfaceValues, point_count: int) -> No
 
 
 def _between(table: NDArray[np.float64], places: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Rows of a table, interpolated between one and the next; a row without weight takes no part, even if it is NaN."""
+    """Rows of a table, interpolated between one and the next; one without weight takes no part, even if it is NaN."""
     first = np.floor(places).astype(np.int64)
     share = (places - first).reshape(-1, *[1] * (table.ndim - 1))
     second = np.where(places > first, first + 1, first)
-    return np.asarray((1 - share) * table[first] + share * table[second])
+    with np.errstate(invalid="ignore"):  # what is infinite becomes NaN: both have no colour
+        return np.asarray((1 - share) * table[first] + share * table[second])
 
 
 def three_numbers(given: ArrayLike, what: str) -> NDArray[np.float64]:

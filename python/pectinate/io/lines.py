@@ -130,7 +130,9 @@ def values_at_points(placement: Placement, name: str, values: ArrayLike) -> NDAr
     if array.shape == (len(mesh.vertices),):
         corners = array[mesh.triangles[placement.point_triangles]]
         # A corner without weight takes no part, even if it is NaN.
-        return np.asarray(np.where(placement.barycentric != 0, placement.barycentric * corners, 0.0).sum(axis=1))
+        with np.errstate(invalid="ignore"):  # infinite numbers without weight
+            weighted = placement.barycentric * corners
+            return np.asarray(np.where(placement.barycentric != 0, weighted, 0.0).sum(axis=1))
     if array.shape == (len(placement.points),):
         return array
     raise InvalidOption(
