@@ -15,7 +15,8 @@ import meshes
 import pectinate
 from browser import Browser, start_browser
 from pectinate import datasets, place_streamlines
-from pectinate.figure import SurfaceValues, render_view, standard_view
+from pectinate.figure import Layer, SurfaceValues, render_view, standard_view
+from pectinate.figure.parts import values_at
 from pectinate.viewer import Marker, Page, Part
 
 SIZE = (360, 300)
@@ -154,6 +155,57 @@ def test_the_surface_arrives_as_it_was(browser: Browser, page: Path, placement: 
         for n, (v, t) in zip(normals, ((positions, corners), (mesh.vertices, mesh.triangles)), strict=True)
     ]
     assert volumes[0] == pytest.approx(volumes[1], rel=1e-4)
+
+
+@pytest.mark.usefixtures("opengl")
+@pytest.mark.parametrize("taper", [None, 0.0])
+def test_values_on_tubes_and_contours_are_those_of_the_picture(
+    browser: Browser, placement: pectinate.Placement, values: NDArray[np.float64], tmp_path: Path, taper: float | None
+) -> None:
+    pytest.importorskip("matplotlib")
+    x = placement.mesh.vertices[:, 0]
+    on_surface, on_tubes = SurfaceValues(x, "magma", contours=8.0), SurfaceValues(values)
+    look = {"surface_values": on_surface, "tube_values": on_tubes, "taper_length": taper}
+    placement.save(tmp_path / "page.html", **look)
+    open_folded(browser, tmp_path / "page.html")
+    shown, mesh = browser.picture(ratio=2), placement.mesh
+    tubes = placement.tubes(taper_length=taper)
+    at_points = (placement.barycentric * np.nan_to_num(values)[mesh.triangles[placement.point_triangles]]).sum(axis=1)
+    missing = (np.isnan(values)[mesh.triangles[placement.point_triangles]] & (placement.barycentric > 0)).any(axis=1)
+    numbers = values_at(SurfaceValues(np.where(missing, np.nan, at_points)), tubes.vertex_points)
+    layer = Layer((tubes.vertices, tubes.triangles), (0, 0, 0), numbers)
+    surface = (mesh.vertices, mesh.triangles)
+    drawn = render_view(surface, layers=[layer], surface_values=on_surface, size=SIZE).astype(np.float64)
+    assert overlap(covered(shown), covered(drawn)) > 0.98
+    assert np.abs(shown - drawn).mean() < 5
+    assert np.corrcoef(shown.ravel(), drawn.ravel())[0, 1] > 0.98
+    keys = browser.run("return viewer.keys().map(({ scale, someMissing }) => [scale.name, someMissing])")
+    assert keys == [["values", False], ["values", True]]
+    click = "document.querySelector('input[name=contours]').click()"
+    browser.run(click)
+    plain = render_view(surface, layers=[layer], surface_values=SurfaceValues(x, "magma"), size=SIZE).astype(np.float64)
+    without = browser.picture(ratio=2)
+    changed = np.abs(without - shown).max(axis=2) > 40
+    assert changed.sum() > 500
+    assert np.corrcoef(changed.ravel(), (np.abs(plain - drawn).max(axis=2) > 40).ravel())[0, 1] > 0.8
+    browser.run("viewer.showTubeValues(-1)")
+    assert dark_area(browser.picture(ratio=2)) > dark_area(without) + 2000
+    assert browser.messages() == []
+
+
+@pytest.mark.usefixtures("opengl")
+def test_categories_have_their_colours_and_no_scale(browser: Browser, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    vertices, triangles = meshes.sphere(4, radius=10.0)
+    tags = SurfaceValues((vertices[triangles][:, :, 0].mean(axis=1) // 4).astype(int), categories={0: "middle"})
+    Page(Part("", (vertices, triangles), surface_values={"tag": tags})).save(tmp_path / "tags.html")
+    open_folded(browser, tmp_path / "tags.html")
+    browser.run("viewer.insets = () => [0, 0]; viewer.look(0)")
+    drawn = render_view((vertices, triangles), surface_values=tags, size=SIZE).astype(np.float64)
+    assert np.abs(browser.picture(ratio=2) - drawn).mean() < 3
+    assert browser.run("return viewer.keys()[0].scale.categories") == ["-3", "-2", "-1", "middle", "1", "2"]
+    plain, written = (browser.picture(written=w) for w in (False, True))
+    assert np.abs(plain - written)[:, :90].max() > 100
 
 
 def test_tubes_have_the_taper_of_the_paper(browser: Browser, page: Path, placement: pectinate.Placement) -> None:
