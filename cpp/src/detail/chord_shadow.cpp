@@ -18,42 +18,6 @@ std::optional<Interval> part_within(double start, double rise, double radius) {
 
 }  // namespace
 
-ChordFrame::ChordFrame(const Vector& low, const Vector& middle, const Vector& high, double split)
-    : low_(low), split_(split) {
-  const Vector low_to_high = high - low;
-  along_ = (low + split * low_to_high - middle).normalized();
-  high_x_ = along_.dot(low_to_high);
-  middle_x_ = along_.dot(middle - low);
-  across_ = low_to_high - high_x_ * along_;
-  width_ = across_.norm();
-  across_ /= width_;
-  normal_ = along_.cross(across_);
-}
-
-std::optional<Interval> ChordFrame::reach(const Capsule& capsule) const {
-  const auto& [start, end, radius] = capsule;
-  const bool meets_plane = (start.z() < 0) != (end.z() < 0);
-  const double height = meets_plane ? 0 : std::min(std::abs(start.z()), std::abs(end.z()));
-  const double square = radius * radius - height * height;
-  if (!(square >= 0)) return std::nullopt;
-  const double disc_radius = std::sqrt(square);
-  return Interval{(std::min(start.y(), end.y()) - disc_radius) / width_,
-                  (std::max(start.y(), end.y()) + disc_radius) / width_};
-}
-
-ChordFrame::View ChordFrame::look(const Capsule& capsule) const {
-  const Vector axis = capsule.end - capsule.start;
-  const double axis_square = axis.squaredNorm(), inverse = axis_square > 0 ? 1 / axis_square : 0;
-  const auto look_at = [&](double x, double w) -> Corner {
-    const Vector from_start = Vector(x, w, 0) - capsule.start;
-    const double along = from_start.dot(axis) * inverse;
-    const Vector across = from_start - along * axis;
-    const double beyond = along - std::clamp(along, 0.0, 1.0), square = across.squaredNorm();
-    return {along, across, square, square + beyond * beyond * axis_square <= capsule.radius * capsule.radius};
-  };
-  return {look_at(0, 0), look_at(middle_x_, split_ * width_), look_at(high_x_, width_)};
-}
-
 bool ChordFrame::contains(double x, double chord) const {
   if (!(chord >= 0 && chord <= 1)) return false;
   const double from_long = x - chord * high_x_;

@@ -16,8 +16,10 @@ namespace {
 constexpr double hugging_bonus = 1.05;
 /// Seeds of hugging lines lie this far outside the band that they hug, in separation distances.
 constexpr double hugging_gap = 1e-6;
-/// Rings of triangles beside a trajectory of the pool that need no other.
-constexpr int most_rings = 3;
+/// Rings of triangles beside a trajectory of the pool that need no other. The fewer lines there will be, the more it
+/// pays to choose them well: beyond this many edges a separation distance, the pool is denser.
+constexpr int usual_rings = 2, rings_of_dense_pool = 1;
+constexpr double sparse_separation = 6;
 /// Room for stored chords per triangle, seldom all used.
 constexpr std::size_t most_usual_chords = 8;
 /// Narrower gaps between occupied chords hold no streamline.
@@ -145,8 +147,8 @@ class LongestFirst {
     return sum;
   }
 
-  void push(const Stretch& stretch, std::int32_t trajectory) {
-    const double key = length(stretch);
+  void push(const Stretch& stretch, std::int32_t trajectory) { push(stretch, length(stretch), trajectory); }
+  void push(const Stretch& stretch, double key, std::int32_t trajectory) {
     if (stretch.first < stretch.last && key >= minimum_length_) {
       heap_.push({key * trajectories_[trajectory].bonus, stretch, trajectory});
     }
@@ -163,7 +165,7 @@ class LongestFirst {
       if (served[t] || occupancy_.stopped().is_full(t)) continue;
       if (!go_on()) return false;
       const auto stretch = add_trajectory(t, 0.5, false, 1).stretch;
-      const int rings = std::clamp(static_cast<int>(separation(t) / (2 * edge)), 1, most_rings);
+      const int rings = separation(t) > sparse_separation * edge ? rings_of_dense_pool : usual_rings;
       serve(stretch, rings, served);
     }
     return true;
@@ -232,10 +234,11 @@ class LongestFirst {
       heap_.pop();
       if (!heap_.empty()) prefetch(heap_.top().stretch);
       if (const auto best = longest_free(piece)) {
-        if (is_still_first(*best, piece.trajectory)) {
-          place_best(*best, piece.trajectory);
+        const auto& [stretch, length] = *best;
+        if (is_still_first(length, piece.trajectory)) {
+          place_best(stretch, piece.trajectory);
         } else {
-          push(*best, piece.trajectory);
+          push(stretch, length, piece.trajectory);
         }
       }
     }
@@ -250,15 +253,18 @@ class LongestFirst {
     }
   }
 
-  bool is_still_first(const Stretch& stretch, std::int32_t trajectory) const {
-    const double now = length(stretch);
+  bool is_still_first(double now, std::int32_t trajectory) const {
     return now >= minimum_length_ && (heap_.empty() || now * trajectories_[trajectory].bonus >= heap_.top().key);
   }
 
+  struct FreeStretch {
+    Stretch stretch;
+    double length;
+  };
+
   /// The longest free stretch of a piece; the others go back to the heap.
-  std::optional<Stretch> longest_free(const Piece& piece) {
-    std::optional<Stretch> best;
-    double best_length = 0;
+  std::optional<FreeStretch> longest_free(const Piece& piece) {
+    std::optional<FreeStretch> best;
     for (auto i = piece.stretch.first; i < piece.stretch.last;) {
       if (is_stopped(chords_[i])) {
         ++i;
@@ -273,12 +279,11 @@ class LongestFirst {
       }
       i = run.last;
       if (!can_start) continue;
-      if (best && run_length <= best_length) {
-        push(run, piece.trajectory);
+      if (best && run_length <= best->length) {
+        push(run, run_length, piece.trajectory);
       } else {
-        if (best) push(*best, piece.trajectory);
-        best = run;
-        best_length = run_length;
+        if (best) push(best->stretch, best->length, piece.trajectory);
+        best = {run, run_length};
       }
     }
     return best;
@@ -301,7 +306,7 @@ class LongestFirst {
     if (part.last - part.first < stretch.last - stretch.first) {
       push({stretch.first, part.first}, trajectory);
       push({part.last, stretch.last}, trajectory);
-      if (!is_still_first(part, trajectory)) {
+      if (!is_still_first(length(part), trajectory)) {
         push(part, trajectory);
         return;
       }
