@@ -28,12 +28,12 @@ struct Exit {
 ///
 /// Tracing goes from record to record all over the surface: a cache line holds two.
 struct alignas(32) TriangleCrossings {
-  double split = 0;                                    ///< 0 in a triangle without a direction
-  std::array<std::int32_t, 3> neighbours{-1, -1, -1};  ///< by Role, also where streamlines stop; -1 at borders
-  std::array<std::uint8_t, 3> codes{};                 ///< by Role: see `make_code`
-  std::int8_t middle = 0;                              ///< the corner that the side low-high misses
-  float longest_chord = 0;                             ///< through the middle corner
-  float width = 0;                                     ///< across the field, from the low corner to the high one
+  double split;                            ///< 0 in a triangle without a direction
+  std::array<std::int32_t, 3> neighbours;  ///< by Role, also where streamlines stop; -1 at borders
+  std::array<std::uint8_t, 3> codes;       ///< by Role: see `make_code`
+  std::int8_t middle;                      ///< the corner that the side low-high misses
+  float longest_chord;                     ///< through the middle corner
+  float width;                             ///< across the field, from the low corner to the high one
 
   /// Of a side that is `role_there` in the triangle beyond; `stop` is 0 where streamlines go on, else reason + 1.
   static std::uint8_t make_code(Role role_there, bool reversed, int stop) {
@@ -50,14 +50,14 @@ struct alignas(32) TriangleCrossings {
 
 /// The part of triangle side `side` in the chords, given the corner that lies in the middle.
 inline Role role_of(int side, int middle) {
-  constexpr std::array<std::array<Role, 3>, 3> roles = {
-      {{low_middle, low_high, middle_high}, {middle_high, low_middle, low_high}, {low_high, middle_high, low_middle}}};
+  static constexpr Role roles[3][3] = {
+      {low_middle, low_high, middle_high}, {middle_high, low_middle, low_high}, {low_high, middle_high, low_middle}};
   return roles[middle][side];
 }
 
 /// And back.
 inline int side_of(Role role, int middle) {
-  constexpr std::array<std::array<std::int8_t, 3>, 3> sides = {{{1, 0, 2}, {2, 1, 0}, {0, 2, 1}}};
+  static constexpr std::int8_t sides[3][3] = {{1, 0, 2}, {2, 1, 0}, {0, 2, 1}};
   return sides[middle][role];
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <new>
+#include <utility>
 #include <vector>
 
 namespace pectinate::detail {
@@ -29,6 +30,16 @@ class LargePageAllocator {
   }
   void deallocate(T* memory, std::size_t count) { ::operator delete(memory, alignment(count * sizeof(T))); }
 
+  /// Elements without a value are left as the memory is: to write it twice costs as much as to compute them.
+  template <class U>
+  void construct(U* place) {
+    ::new (static_cast<void*>(place)) U;
+  }
+  template <class U, class... Arguments>
+  void construct(U* place, Arguments&&... arguments) {
+    ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
+  }
+
   bool operator==(const LargePageAllocator&) const = default;
 
  private:
@@ -39,6 +50,7 @@ class LargePageAllocator {
   }
 };
 
+/// Elements of built-in types have no value until they are given one.
 template <class T>
 using LargeArray = std::vector<T, LargePageAllocator<T>>;
 

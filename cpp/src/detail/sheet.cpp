@@ -28,8 +28,7 @@ struct Sides {
 struct SideAngles {
   /// The angle from a side's edge to the orientation, taken as running into the triangle, lies in (0, pi): `sine` and
   /// `cosine` are its, times the side's length.
-  std::array<double, 3> sine{}, cosine{};
-  std::array<std::int8_t, 3> side_beyond{};  ///< which side of its neighbour it is
+  std::array<double, 3> sine, cosine;  ///< by Role
 };
 
 /// An orientation turned in its plane away from a side that it is parallel to.
@@ -40,11 +39,10 @@ Vector turned_away(const Vector& direction, const Vector& side, const Vector& no
 }
 
 /// The corner between the others across the orientation: there the two sides beside it turn the same way.
-std::int32_t corner_between(const std::array<double, 3>& rise) {
-  for (std::int32_t k = 0; k < 2; ++k) {
-    if ((rise[(k + 2) % 3] <= 0) == (rise[k] <= 0)) return k;
-  }
-  return 2;
+int corner_between(const std::array<double, 3>& rise) {
+  const bool first = rise[0] <= 0, second = rise[1] <= 0, third = rise[2] <= 0;
+  if (third == first) return 0;
+  return first == second ? 1 : 2;
 }
 
 /// A triangle's place and orientation.
@@ -126,7 +124,7 @@ class SheetMaker {
   void measure(std::int32_t t, std::int32_t i) {
     sheet_.mesh_triangles[i] = t;
     const auto& corners = mesh_.triangles()[t];
-    TriangleCrossings crossings;
+    TriangleCrossings crossings{};
     Sides sides{};
     if (field_.has_direction(t)) {
       const auto at = [&](int k) { return vector(mesh_.vertices()[corners[k]]); };
@@ -142,12 +140,13 @@ class SheetMaker {
       const auto role = role_of(k, m);
       const bool runs_along = mesh_.runs_along(t, k);
       // Inside is to the left of a side; the orientation runs there if the side falls across it.
-      angles.sine[k] = std::abs(sides.across[k]);
-      angles.cosine[k] = (sides.across[k] < 0) == runs_along ? sides.along[k] : -sides.along[k];
-      angles.side_beyond[k] = across.side;
+      angles.sine[role] = std::abs(sides.across[k]);
+      angles.cosine[role] = (sides.across[k] < 0) == runs_along ? sides.along[k] : -sides.along[k];
       crossings.neighbours[role] = across.triangle < 0 ? -1 : sheet_.ranks[across.triangle];
-      // Chord coordinates run low to high, sides run middle-low, low-high, high-middle.
-      crossings.codes[role] = TriangleCrossings::make_code(low_high, runs_along != (role == low_high), 0);
+      // The side there will be replaced by its role. Chord coordinates run low to high, sides run middle-low, low-high,
+      // high-middle.
+      const auto side_there = static_cast<Role>(std::max<std::int8_t>(across.side, 0));
+      crossings.codes[role] = TriangleCrossings::make_code(side_there, runs_along != (role == low_high), 0);
     }
     sheet_.crossings[i] = crossings;
   }
@@ -155,21 +154,21 @@ class SheetMaker {
   void set_exit(std::int32_t i, Role role) {
     auto& crossings = sheet_.crossings[i];
     const auto j = crossings.neighbours[role];
-    const int side = side_of(role, crossings.middle), side_there = angles_[i].side_beyond[side];
+    const int side_there = crossings.codes[role] & 3;
     const Role role_there = j < 0 ? low_high : role_of(side_there, sheet_.crossings[j].middle);
-    const int stop = stop_between(i, side, j, side_there);
+    const int stop = stop_between(i, role, j, role_there);
     crossings.codes[role] = TriangleCrossings::make_code(role_there, crossings.is_reversed(role), stop);
   }
 
   /// Why streamlines stop between two sides (criteria 2 and 4, or where the field ends): the reason + 1, or 0.
-  int stop_between(std::int32_t i, int side, std::int32_t j, int side_there) const {
+  int stop_between(std::int32_t i, Role role, std::int32_t j, Role role_there) const {
     const auto stop = [](StopReason reason) { return static_cast<int>(reason) + 1; };
     if (j < 0) return stop(StopReason::boundary);
     if (!sheet_.has_direction(i) || !sheet_.has_direction(j)) return stop(StopReason::no_field);
-    const double sine = angles_[i].sine[side], cosine = angles_[i].cosine[side];
+    const double sine = angles_[i].sine[role], cosine = angles_[i].cosine[role];
     // Unfolded about the edge, a straight way leaves at the angle here and goes on at pi minus it: the turn is the
     // difference of that and the angle there.
-    const double turn_cosine = sine * angles_[j].sine[side_there] - cosine * angles_[j].cosine[side_there];
+    const double turn_cosine = sine * angles_[j].sine[role_there] - cosine * angles_[j].cosine[role_there];
     return turn_cosine < least_turn_cosine_ * (sine * sine + cosine * cosine) ? stop(StopReason::abrupt_turn) : 0;
   }
 
