@@ -104,19 +104,33 @@ def _steps_of(name: str, repeats: int) -> Line:
 
 def editing(_surfaces: Sequence[str], _repeats: int) -> str:
     """A tract more or less on la_epi against a fresh solve, in turn; then many edits against a fresh solver."""
-    mesh, tracts = measured("la_epi").mesh, measured_tracts("la_epi")
+    mesh, tracts, borders = (
+        measured("la_epi").mesh,
+        measured_tracts("la_epi"),
+        parallel_borders(measured("la_epi").mesh),
+    )
     projector = _core.TractProjector(mesh)
     live = _core.FieldInterpolator(mesh)
-    before = constraints("la_epi")
-    lines = sorted(polylines(_core.place_streamlines(mesh, live.interpolate(before).field)), key=length_of)
+    field = live.interpolate(constraints("la_epi")).field
+    lines = sorted(polylines(_core.place_streamlines(mesh, field)), key=length_of)
     lengths = (5.0, 20.0, 60.0)
     drawn = [first_part(next(line for line in lines if length_of(line) >= length), length) for length in lengths]
-    after = [projector.make_constraints([*tracts, _core.Tract(line)], parallel_borders(mesh)) for line in drawn]
+
+    def start() -> None:
+        demands = _core.TractProjector(mesh).make_constraints(tracts, borders)
+        _core.FieldInterpolator(mesh).interpolate(demands)
+
+    def edit(tracts: list[_core.Tract]) -> None:
+        live.interpolate(projector.make_constraints(tracts, borders))
+
     fresh, added, removed = [], [], []
     for _ in range(7):
-        fresh.append(cpu_seconds(lambda: _core.FieldInterpolator(mesh).interpolate(before)))
-        added.append([cpu_seconds(_edit(live, demands, before)) for demands in after])
-        removed.append([cpu_seconds(_edit(live, before, demands)) for demands in after])
+        fresh.append(cpu_seconds(start))
+        added.append([])
+        removed.append([])
+        for line in drawn:
+            added[-1].append(cpu_seconds(partial(edit, [*tracts, _core.Tract(line)])))
+            removed[-1].append(cpu_seconds(partial(edit, tracts)))
     whole, more, less = np.median(fresh), np.median(added, axis=0), np.median(removed, axis=0)
     rows = [
         [
@@ -131,11 +145,6 @@ def editing(_surfaces: Sequence[str], _repeats: int) -> str:
     ]
     table = align(["tract mm", "fresh s", "add ms", "remove ms", "fresh / add", "fresh / remove"], rows, left=0)
     return f"{table}\n\n{_many_edits(live, projector, lines)}"
-
-
-def _edit(live: _core.FieldInterpolator, new: _core.Constraints, old: _core.Constraints) -> Callable[[], object]:
-    live.interpolate(old)
-    return lambda: live.interpolate(new)
 
 
 def _many_edits(live: _core.FieldInterpolator, projector: _core.TractProjector, lines: list[np.ndarray]) -> str:

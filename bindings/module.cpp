@@ -17,4 +17,5 @@ PYBIND11_MODULE(_core, module) {
   bind_placement(module);
   bind_tubes(module);
   bind_demo_atrium(module);
+  bind_atria(module);
 }

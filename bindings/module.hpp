@@ -18,5 +18,6 @@ void bind_interpolation(pybind11::module_& module);
 void bind_smoothing(pybind11::module_& module);
 void bind_comparison(pybind11::module_& module);
 void bind_demo_atrium(pybind11::module_& module);
+void bind_atria(pybind11::module_& module);
 
 }  // namespace pectinate::bindings

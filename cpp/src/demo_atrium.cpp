@@ -7,9 +7,9 @@
 #include <numbers>
 #include <string>
 
-#include "detail/isosurface.hpp"
 #include "detail/left_atrium.hpp"
-#include "detail/remeshing.hpp"
+#include "detail/number_text.hpp"
+#include "detail/surface_generation.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/errors.hpp"
 #include "pectinate/orientation_field.hpp"
@@ -21,8 +21,6 @@ namespace {
 using detail::Vector;
 
 constexpr double shortest_edge = 0.2, longest_edge = 4;
-/// Shorter edges are made by subdivision of triangles at least this large, which is many times faster.
-constexpr double shortest_remeshed_edge = 0.8;
 
 /// How far the fibres of each part reach, in mm, and how strong those of the body are beside them.
 constexpr double sleeve_reach = 7, annulus_reach = 9, appendage_reach = 5, bachmann_reach = 11;
@@ -31,17 +29,8 @@ constexpr double bachmann_height = 10;
 
 void check(double edge_length) {
   if (!(edge_length >= shortest_edge && edge_length <= longest_edge)) {
-    throw InvalidOption("edge_length is " + std::to_string(edge_length) + " mm, but must be in [0.2, 4]");
+    throw InvalidOption("edge_length is " + detail::number_text(edge_length) + " mm, but must be in [0.2, 4]");
   }
-}
-
-detail::CutTriangles make_triangles(const detail::ImplicitSurface& surface, double edge_length) {
-  int subdivisions = 0;
-  while (std::ldexp(edge_length, subdivisions) < shortest_remeshed_edge) ++subdivisions;
-  const double coarse = std::ldexp(edge_length, subdivisions);
-  auto triangles = detail::remesh(detail::extract_isosurface(surface, coarse), surface, coarse);
-  for (int i = 0; i < subdivisions; ++i) triangles = detail::subdivide(triangles, surface);
-  return triangles;
 }
 
 double fading(double distance, double reach) {
@@ -66,8 +55,8 @@ class LineBlend {
 SymmetricTensor fibre_tensor(const detail::LeftAtrium& atrium, const Vector& point, const Vector& normal) {
   LineBlend blend;
   for (const auto& vein : atrium.veins) {
-    const double weight = fading(detail::sample(vein.sleeve, point).value, sleeve_reach);
-    blend.add_circles(vein.sleeve.axis(), normal, weight);
+    const double weight = fading(detail::sample(vein.cone, point).value, sleeve_reach);
+    blend.add_circles(vein.cone.axis(), normal, weight);
   }
   const auto& valve = atrium.mitral_valve;
   blend.add_circles(valve.normal, normal, fading(-valve.height(point), annulus_reach));
@@ -86,7 +75,7 @@ SymmetricTensor fibre_tensor(const detail::LeftAtrium& atrium, const Vector& poi
 /// 0 for the body, 1 to 4 for the veins, 5 for the appendage: the part that the point is deepest in.
 std::int32_t region_of(const detail::LeftAtrium& atrium, const Vector& point) {
   std::vector<double> depths{detail::sample_body(atrium, point).value};
-  for (const auto& vein : atrium.veins) depths.push_back(detail::sample(vein.sleeve, point).value);
+  for (const auto& vein : atrium.veins) depths.push_back(detail::sample(vein.cone, point).value);
   depths.push_back(detail::sample_appendage(atrium, point).value);
   return static_cast<std::int32_t>(std::min_element(depths.begin(), depths.end()) - depths.begin());
 }
@@ -96,7 +85,7 @@ std::int32_t region_of(const detail::LeftAtrium& atrium, const Vector& point) {
 DemoAtrium make_demo_atrium(const DemoAtriumOptions& options) {
   check(options.edge_length);
   const auto atrium = detail::make_left_atrium();
-  const auto cut = make_triangles(detail::make_surface(atrium), options.edge_length);
+  const auto cut = detail::triangulate(detail::make_surface(atrium), options.edge_length, detail::Finish::remeshed);
 
   DemoAtrium result;
   result.triangles = cut.surface.triangles;

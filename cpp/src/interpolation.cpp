@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <optional>
 #include <string>
 
 #include "detail/connection.hpp"
-#include "detail/field_of_directions.hpp"
 #include "detail/frontal_cholesky.hpp"
+#include "detail/number_text.hpp"
 #include "detail/phase_system.hpp"
 #include "detail/random.hpp"
 #include "pectinate/errors.hpp"
@@ -87,13 +86,14 @@ class FieldInterpolator::State {
       system_.update(rows);
       cholesky_.eliminate_again(system_.matrix(), system_.right_hand_side(), rows);
       ready_ = true;
-    } else if (last_) {
-      return *last_;
+    } else if (solved_) {
+      return field_of(constraints);
     }
-    last_.reset();
+    solved_ = false;
     const bool any_free = std::ranges::find(is_constrained_, false) != is_constrained_.end();
-    last_ = field_of(any_free ? smoothest() : cholesky_.solution(), constraints);
-    return *last_;
+    phase_ = any_free ? smoothest() : cholesky_.solution();
+    solved_ = true;
+    return field_of(constraints);
   }
 
  private:
@@ -114,7 +114,10 @@ class FieldInterpolator::State {
       }
       if (seen[t]) throw InvalidField(which + " is given twice; give one a triangle");
       seen[t] = true;
-      if (!(weight > 0)) throw InvalidField(which + " has a weight that is not positive; leave it out or weight it");
+      if (!(weight >= least_weight && (weight <= greatest_weight || weight == hard))) {
+        throw InvalidField(which + " has the weight " + detail::number_text(weight) +
+                           ", but weights are from 1e-6 to 1e12, or hard; leave it out or weight it");
+      }
       const double height = vector(direction).dot(vector(mesh_.triangle_normals()[t]));
       const double length = vector(direction).norm();
       if (!std::isfinite(length) || !(length - std::abs(height) > 1e-9 * length)) {
@@ -129,18 +132,26 @@ class FieldInterpolator::State {
 
   /// Sets the constraints of all nodes; the nodes at which they are new.
   std::vector<std::int32_t> constrain(std::span<const TriangleConstraint> constraints) {
-    std::vector<PhaseConstraint> wanted(mesh_.triangle_count());
-    for (const auto& given : constraints) wanted[given.triangle] = constraint_of(given);
+    std::vector<bool> stays(mesh_.triangle_count(), false);
     std::vector<std::int32_t> changed;
     const auto set = [&](std::int32_t node, const PhaseConstraint& constraint) {
       if (system_.constraint(node) == constraint) return;
       system_.constrain(node, constraint);
       changed.push_back(node);
     };
-    for (std::int32_t t = 0; t < triangle_count(); ++t) {
-      set(t, wanted[t]);
-      if (connection_.back[t] >= 0) set(connection_.back[t], {std::conj(wanted[t].target), wanted[t].weight});
+    const auto set_triangle = [&](std::int32_t t, const PhaseConstraint& constraint) {
+      set(t, constraint);
+      if (connection_.back[t] >= 0) set(connection_.back[t], {std::conj(constraint.target), constraint.weight});
+    };
+    for (const auto& given : constraints) {
+      stays[given.triangle] = true;
+      set_triangle(given.triangle, constraint_of(given));
     }
+    for (const auto t : constrained_) {
+      if (!stays[t]) set_triangle(t, {});
+    }
+    constrained_.clear();
+    for (const auto& given : constraints) constrained_.push_back(given.triangle);
     return changed;
   }
 
@@ -212,19 +223,20 @@ class FieldInterpolator::State {
     }
   }
 
-  Interpolation field_of(const Eigen::VectorXcd& phase, std::span<const TriangleConstraint> constraints) const {
+  Interpolation field_of(std::span<const TriangleConstraint> constraints) const {
     std::vector<Vec3> directions(mesh_.triangle_count(), Vec3{0, 0, 0});
     std::vector<double> confidence(mesh_.triangle_count());
     for (std::int32_t t = 0; t < triangle_count(); ++t) {
-      confidence[t] = std::min(std::sqrt(std::norm(phase[t])), 1.0);
-      if (confidence[t] > 0) directions[t] = detail::vec3(detail::direction_of(phase[t], frames_[t]));
+      confidence[t] = std::min(std::sqrt(std::norm(phase_[t])), 1.0);
+      if (confidence[t] > 0) directions[t] = detail::vec3(detail::direction_of(phase_[t], frames_[t]));
     }
-    for (const auto& given : constraints) {
-      if (!std::isinf(given.weight)) continue;
-      directions[given.triangle] = given.direction;
-      confidence[given.triangle] = 1;
+    for (const auto& [t, direction, weight, tract] : constraints) {
+      if (!std::isinf(weight)) continue;
+      const detail::Vector normal = vector(mesh_.triangle_normals()[t]), unit = vector(direction).normalized();
+      directions[t] = detail::vec3((unit - unit.dot(normal) * normal).normalized());
+      confidence[t] = 1;
     }
-    return {detail::field_of_directions(mesh_, directions), std::move(confidence)};
+    return {OrientationField::from_planar_units(mesh_, std::move(directions)), std::move(confidence)};
   }
 
   const SurfaceMesh& mesh_;
@@ -234,8 +246,10 @@ class FieldInterpolator::State {
   detail::FrontalCholesky cholesky_;
   std::vector<std::int32_t> triangle_of_;  ///< per node
   std::vector<bool> is_constrained_;       ///< per component
+  std::vector<std::int32_t> constrained_;  ///< triangles
+  Eigen::VectorXcd phase_;                 ///< the solution, per node
   bool ready_ = false;                     ///< the factorization is that of the system
-  std::optional<Interpolation> last_;
+  bool solved_ = false;                    ///< and so is the phase
 };
 
 FieldInterpolator::FieldInterpolator(const SurfaceMesh& mesh)

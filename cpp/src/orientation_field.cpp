@@ -24,22 +24,28 @@ struct Direction {
   double out_of_plane_angle = 0;
 };
 
+using Sides = std::array<Vector, 3>;
+
+Sides sides_of(const SurfaceMesh& mesh, std::size_t t) {
+  const auto& [a, b, c] = mesh.triangles()[t];
+  const auto at = [&](std::int32_t v) { return vector(mesh.vertices()[v]); };
+  return {at(b) - at(a), at(c) - at(b), at(a) - at(c)};
+}
+
 struct Plane {
-  std::array<Vector, 3> sides;
+  Sides sides;
   Vector normal;
 };
 
 Plane plane_of(const SurfaceMesh& mesh, std::size_t t) {
-  const auto& [a, b, c] = mesh.triangles()[t];
-  const auto at = [&](std::int32_t v) { return vector(mesh.vertices()[v]); };
-  return {{at(b) - at(a), at(c) - at(b), at(a) - at(c)}, vector(mesh.triangle_normals()[t])};
+  return {sides_of(mesh, t), vector(mesh.triangle_normals()[t])};
 }
 
 /// The sign of a line is free: this one depends on the triangle's own sides only, so that neither the input's sign
 /// nor a rotation of the mesh shows in the result.
-Vector with_canonical_sign(const Vector& direction, const Plane& plane) {
+Vector with_canonical_sign(const Vector& direction, const Sides& sides) {
   double greatest = 0;
-  for (const auto& side : plane.sides) {
+  for (const auto& side : sides) {
     const double product = side.dot(direction);
     if (std::abs(product) > std::abs(greatest)) greatest = product;
   }
@@ -58,7 +64,7 @@ Direction from_vector(const Vec3& input, const Plane& plane) {
   if (share <= least_share) return {DirectionStatus::normal};
   // Most made fields lie in the plane: there the angle is its tangent, to the last bit.
   const double tangent = std::abs(height) / share;
-  return {DirectionStatus::valid, with_canonical_sign(in_plane / share, plane),
+  return {DirectionStatus::valid, with_canonical_sign(in_plane / share, plane.sides),
           tangent < 1e-9 ? tangent : std::atan(tangent)};
 }
 
@@ -96,7 +102,7 @@ class PlaneTensor {
     if (magnitude <= least_share * size_) return {DirectionStatus::isotropic};
     const double angle = std::atan2(shear_, difference_) / 2;
     const Vector unit = std::cos(angle) * along_ + std::sin(angle) * across_;
-    return {DirectionStatus::valid, with_canonical_sign(unit, plane_)};
+    return {DirectionStatus::valid, with_canonical_sign(unit, plane_.sides)};
   }
 
  private:
@@ -150,6 +156,14 @@ struct Directions {
   std::vector<double> out_of_plane_angles;
 };
 
+void require_any(const std::vector<DirectionStatus>& status) {
+  if (std::ranges::find(status, DirectionStatus::valid) != status.end()) return;
+  throw InvalidField(
+      "no triangle has a direction: all vectors are zero, not finite or perpendicular to the surface; check which "
+      "array "
+      "was read");
+}
+
 /// What `direct(t, plane)` says of every triangle.
 template <class Direct>
 Directions direct_all(const SurfaceMesh& mesh, const Direct& direct) {
@@ -163,11 +177,7 @@ Directions direct_all(const SurfaceMesh& mesh, const Direct& direct) {
     all.status.push_back(result.status);
     all.out_of_plane_angles.push_back(result.out_of_plane_angle);
   }
-  if (std::find(all.status.begin(), all.status.end(), DirectionStatus::valid) == all.status.end()) {
-    throw InvalidField(
-        "no triangle has a direction: all vectors are zero, not finite or perpendicular to the "
-        "surface; check which array was read");
-  }
+  require_any(all.status);
   return all;
 }
 
@@ -192,6 +202,19 @@ OrientationField OrientationField::from_triangle_vectors(const SurfaceMesh& mesh
   auto [units, status, angles] = direct_all(
       mesh, [&](std::size_t t, const Plane& plane) { return from_vector(vectors[mesh.input_triangle()[t]], plane); });
   return {std::move(units), std::move(status), std::move(angles)};
+}
+
+OrientationField OrientationField::from_planar_units(const SurfaceMesh& mesh, std::vector<Vec3> directions) {
+  std::vector<DirectionStatus> status(directions.size(), DirectionStatus::zero);
+  for (std::size_t t = 0; t < directions.size(); ++t) {
+    const Vector unit = vector(directions[t]);
+    if (unit.isZero(0)) continue;
+    directions[t] = detail::vec3(with_canonical_sign(unit, sides_of(mesh, t)));
+    status[t] = DirectionStatus::valid;
+  }
+  require_any(status);
+  std::vector<double> out_of_plane_angles(directions.size(), 0);
+  return {std::move(directions), std::move(status), std::move(out_of_plane_angles)};
 }
 
 OrientationField OrientationField::from_vertex_vectors(const SurfaceMesh& mesh, std::span<const Vec3> vectors) {

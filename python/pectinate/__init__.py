@@ -10,9 +10,10 @@ Everything is in millimetres after loading. An orientation is a line without a s
 
 from importlib.metadata import version
 
-from pectinate import datasets, errors
+from pectinate import datasets, errors, viewer
 from pectinate._core import OrientationField, SurfaceMesh, Tubes
 from pectinate.comparison import Comparison, add_noise, compare
+from pectinate.figure import Cell, Marker, Part, PatientAxes, figure_sheet
 from pectinate.interpolated_field import InterpolatedField
 from pectinate.interpolation import FieldEditor, interpolate
 from pectinate.io import load, save_surface
@@ -27,12 +28,16 @@ from pectinate.tracts import BoundaryCondition, SurfaceIdentity, Tract, TractSet
 
 __all__ = [
     "BoundaryCondition",
+    "Cell",
     "Comparison",
     "DiskMap",
     "FieldEditor",
     "InterpolatedField",
+    "Marker",
     "Model",
     "OrientationField",
+    "Part",
+    "PatientAxes",
     "Placement",
     "PlacementStatistics",
     "SmoothedField",
@@ -46,6 +51,7 @@ __all__ = [
     "compare",
     "datasets",
     "errors",
+    "figure_sheet",
     "find_loop",
     "interpolate",
     "load",
@@ -54,6 +60,7 @@ __all__ = [
     "read_tracts",
     "save_surface",
     "smooth",
+    "viewer",
 ]
 
 __version__ = version("pectinate")

@@ -104,11 +104,15 @@ class BoundaryRule(Enum):
     parallel = 1
     perpendicular = 2
 
+LEAST_WEIGHT: float
+GREATEST_WEIGHT: float
+
 class Tract:
-    def __init__(self, points: _Numbers, *, name: str = "", weight: float = ...) -> None: ...
+    def __init__(self, points: _Numbers, *, name: str = "", weight: float = ..., number: int | None = None) -> None: ...
     name: str
     points: _Floats
     weight: float
+    number: int | None
 
 class BoundaryCondition:
     def __init__(self, loop: int, rule: BoundaryRule, *, weight: float = ...) -> None: ...
@@ -249,6 +253,22 @@ class DemoAtrium:
     region_names: list[str]
     loops: list[NamedLoop]
 
+class AtrialSurface(Enum):
+    left_atrium = 0
+    right_atrium = 1
+    bachmann_bundle = 2
+
+class AtrialLayer(Enum):
+    epicardium = 0
+    endocardium = 1
+
+class GeneratedSurface:
+    vertices: _Floats
+    triangles: _Ints
+    regions: _Ints
+    region_names: list[str]
+    loops: list[NamedLoop]
+
 def field_topology(mesh: SurfaceMesh, field: OrientationField) -> FieldTopology: ...
 def dirichlet_energy(mesh: SurfaceMesh, field: OrientationField) -> float: ...
 def nearest_surface_points(mesh: SurfaceMesh, points: _Numbers) -> tuple[_Ints, _Floats, _Floats]: ...
@@ -317,8 +337,14 @@ def place_streamlines(
     thread_count: int = ...,
     progress: Callable[[float], bool | None] | None = None,
 ) -> Placement: ...
+
+default_taper_length: float
+
 def make_tubes(
     mesh: SurfaceMesh, placement: Placement, *, radius: float = ..., taper_length: float = ..., side_count: int = ...
 ) -> Tubes: ...
 def make_demo_atrium(*, edge_length: float = ...) -> DemoAtrium: ...
+def make_atrial_surface(
+    surface: AtrialSurface, layer: AtrialLayer = ..., *, edge_length: float = ...
+) -> GeneratedSurface: ...
 def length_histogram(lengths: _Floats, bin_count: int) -> tuple[_Floats, _Longs]: ...

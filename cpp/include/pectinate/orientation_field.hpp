@@ -46,6 +46,9 @@ class OrientationField {
   const std::vector<double>& out_of_plane_angles() const { return out_of_plane_angles_; }
 
  private:
+  friend class FieldInterpolator;
+  /// Unchecked: unit vectors in their planes per MESH triangle, or zero where there is none. Their signs are free.
+  static OrientationField from_planar_units(const SurfaceMesh& mesh, std::vector<Vec3> directions);
   OrientationField(std::vector<Vec3> directions, std::vector<DirectionStatus> status,
                    std::vector<double> out_of_plane_angles);
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "pectinate/atria.hpp"
 #include "pectinate/comparison.hpp"
 #include "pectinate/constraints.hpp"
 #include "pectinate/demo_atrium.hpp"
 #include "pectinate/errors.hpp"
 #include "pectinate/field_topology.hpp"
 #include "pectinate/interpolation.hpp"
+#include "pectinate/named_loop.hpp"
 #include "pectinate/occupancy.hpp"
 #include "pectinate/orientation_field.hpp"
 #include "pectinate/parameterization.hpp"

@@ -15,6 +15,8 @@ namespace {
 /// long as the front is small, or has no more than this share of zeros.
 constexpr double tolerated_zeros = 0.2;
 constexpr std::int32_t small_front = 8;
+/// Within a front's columns products are complex, beyond them split into real ones.
+constexpr std::int32_t largest_front = 40;
 
 /// Subtrees of fewer columns are done again as a whole, and keep nothing inside.
 constexpr std::int32_t small_subtree = 200;
@@ -37,14 +39,35 @@ std::vector<std::int32_t> small_subtrees(const std::vector<std::int32_t>& parent
   return root;
 }
 
+/// Lower triangle of target - left left^H, for real and imaginary parts kept apart.
+void subtract_square(const Eigen::Ref<const Eigen::MatrixXcd>& left, Eigen::MatrixXd& real,
+                     Eigen::MatrixXd& imaginary) {
+  const Eigen::Index rows = left.rows(), count = left.cols();
+  Eigen::MatrixXd parts(rows, 2 * count), turned(rows, 2 * count);
+  parts << left.real(), left.imag();
+  turned << left.imag(), -left.real();
+  real.selfadjointView<Eigen::Lower>().rankUpdate(parts, -1);
+  imaginary.triangularView<Eigen::Lower>() -= turned * parts.transpose();
+}
+
 /// The sum of conj(a) b. Most fronts are too small for a library's kernels.
 std::complex<double> conjugate_dot(const std::complex<double>* a, const std::complex<double>* b, Eigen::Index count) {
-  std::array<double, 2> real{}, imaginary{};  // of even and odd places: sums that need not wait for each other
-  for (Eigen::Index i = 0; i < count; ++i) {
-    real[i % 2] += a[i].real() * b[i].real() + a[i].imag() * b[i].imag();
-    imaginary[i % 2] += a[i].real() * b[i].imag() - a[i].imag() * b[i].real();
+  const auto product = [&](Eigen::Index i) {
+    return std::array{a[i].real() * b[i].real() + a[i].imag() * b[i].imag(),
+                      a[i].real() * b[i].imag() - a[i].imag() * b[i].real()};
+  };
+  std::array<double, 2> even{}, odd{};  // sums that need not wait for each other
+  Eigen::Index i = 0;
+  for (; i + 1 < count; i += 2) {
+    const auto first = product(i), second = product(i + 1);
+    even = {even[0] + first[0], even[1] + first[1]};
+    odd = {odd[0] + second[0], odd[1] + second[1]};
   }
-  return {real[0] + real[1], imaginary[0] + imaginary[1]};
+  if (i < count) {
+    const auto last = product(i);
+    even = {even[0] + last[0], even[1] + last[1]};
+  }
+  return {even[0] + odd[0], even[1] + odd[1]};
 }
 
 }  // namespace
@@ -98,7 +121,7 @@ void FrontalCholesky::make_fronts(const std::vector<std::int32_t>& parents) {
     if (parents[j] >= 0) children[parents[j]].push_back(j);
     const auto height = static_cast<double>(below[j].size());
     const bool same_subtree = j > 0 && subtree[j] >= 0 && subtree[j] == subtree[j - 1];
-    const bool chained = j > 0 && parents[j - 1] == j;
+    const bool chained = j > 0 && parents[j - 1] == j && fronts_.back().count < largest_front;
     if (!same_subtree && !(chained && worth_joining(fronts_.back().count + 1, height, needed + height + 1))) {
       fronts_.emplace_back().first = j;
       needed = 0;
@@ -138,8 +161,11 @@ void FrontalCholesky::link_fronts() {
     front.columns_at = static_cast<std::size_t>(entries);
     entries += front.count * (front.count + static_cast<Eigen::Index>(front.rows.size()));
   }
+  const auto places = static_cast<Eigen::Index>(place_.size());
   factor_.resize(entries);
-  reduced_.resize(static_cast<Eigen::Index>(place_.size()));
+  reduced_.resize(places);
+  solved_.resize(places);
+  solution_.resize(places);
   for (auto& front : fronts_) front.keeps_contribution = front.parent >= 0 && subtree[front.parent] >= small_subtree;
 }
 
@@ -178,24 +204,18 @@ std::vector<bool> FrontalCholesky::fronts_above(std::span<const std::int32_t> no
 }
 
 void FrontalCholesky::factorize(Front& front, const HermitianMatrix& matrix) {
-  const auto count = static_cast<Eigen::Index>(front.count), below = static_cast<Eigen::Index>(front.rows.size());
-  if (dense_.size() < (count + below) * (count + below)) dense_.resize(count + below, count + below);
-  Eigen::Map<Block> dense(dense_.data(), count + below, count + below);
-  dense.setZero();
-  assemble(front, matrix, dense);
-  auto top = dense.topLeftCorner(count, count);
-  auto left = dense.bottomLeftCorner(below, count);
+  assemble(front, matrix);
+  auto top = columns(front).topRows(front.count);
+  auto left = columns(front).bottomRows(static_cast<Eigen::Index>(front.rows.size()));
   if (Eigen::LLT<Eigen::Ref<Block>> cholesky(top); cholesky.info() != Eigen::Success) {
     throw SolverFailure("the matrix is not positive definite");
   }
-  if (below > 0) {
+  if (!front.rows.empty()) {
     top.adjoint().triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(left);
-    dense.bottomRightCorner(below, below).selfadjointView<Eigen::Lower>().rankUpdate(left, -1);
+    subtract_square(left, front.contribution.real, front.contribution.imaginary);
   }
-  Eigen::Map<Block>(factor_.data() + front.columns_at, count + below, count) = dense.leftCols(count);
-  front.contribution = dense.bottomRightCorner(below, below);
   for (const auto child : front.children) {
-    if (!fronts_[child].keeps_contribution) fronts_[child].contribution.resize(0, 0);
+    if (!fronts_[child].keeps_contribution) fronts_[child].contribution = {};
   }
 }
 
@@ -215,8 +235,13 @@ void FrontalCholesky::substitute(Front& front, const Eigen::VectorXcd& right_han
   front.passed_on.noalias() -= columns(front).bottomRows(below) * reduced;
 }
 
-void FrontalCholesky::assemble(const Front& front, const HermitianMatrix& matrix, Eigen::Ref<Block> dense) {
+void FrontalCholesky::assemble(Front& front, const HermitianMatrix& matrix) {
   const auto count = front.count;
+  const auto below = static_cast<Eigen::Index>(front.rows.size());
+  auto dense = columns(front);
+  dense.setZero();
+  front.contribution.real.setZero(below, below);
+  front.contribution.imaginary.setZero(below, below);
   for (std::size_t k = 0; k < front.rows.size(); ++k) local_[front.rows[k]] = count + static_cast<std::int32_t>(k);
   for (std::int32_t k = 0; k < count; ++k) {
     const std::int32_t column = front.first + k;
@@ -227,32 +252,45 @@ void FrontalCholesky::assemble(const Front& front, const HermitianMatrix& matrix
       dense(place, k) = conjugated ? std::conj(matrix.edges[edge]) : matrix.edges[edge];
     }
   }
-  for (const auto c : front.children) {
-    const Front& child = fronts_[c];
-    const auto size = static_cast<Eigen::Index>(child.rows.size());
-    for (Eigen::Index j = 0; j < size; ++j) {
-      auto* column = &dense(0, child.in_parent[j]);
-      for (Eigen::Index i = j; i < size; ++i) column[child.in_parent[i]] += child.contribution(i, j);
+  for (const auto child : front.children) contribute(front, fronts_[child]);
+}
+
+void FrontalCholesky::contribute(Front& front, const Front& child) {
+  auto dense = columns(front);
+  auto& [real, imaginary] = front.contribution;
+  const auto size = static_cast<Eigen::Index>(child.rows.size());
+  Eigen::Index j = 0;
+  for (; j < size && child.in_parent[j] < front.count; ++j) {
+    auto* column = &dense(0, child.in_parent[j]);
+    for (Eigen::Index i = j; i < size; ++i) {
+      column[child.in_parent[i]] +=
+          std::complex<double>(child.contribution.real(i, j), child.contribution.imaginary(i, j));
+    }
+  }
+  for (; j < size; ++j) {
+    const auto to = child.in_parent[j] - front.count;
+    for (Eigen::Index i = j; i < size; ++i) {
+      real(child.in_parent[i] - front.count, to) += child.contribution.real(i, j);
+      imaginary(child.in_parent[i] - front.count, to) += child.contribution.imaginary(i, j);
     }
   }
 }
 
-Eigen::VectorXcd FrontalCholesky::solution() const {
-  Eigen::VectorXcd x(place_.size()), tail;
+const Eigen::VectorXcd& FrontalCholesky::solution() {
+  std::vector<std::complex<double>> tail;
   for (auto front = fronts_.rbegin(); front != fronts_.rend(); ++front) {
     const Eigen::Index count = front->count, height = count + static_cast<Eigen::Index>(front->rows.size());
-    if (tail.size() < height) tail.resize(height);
-    for (Eigen::Index k = count; k < height; ++k) tail[k] = x[front->rows[k - count]];
+    tail.resize(height);
+    for (Eigen::Index k = count; k < height; ++k) tail[k] = solved_[front->rows[k - count]];
     for (Eigen::Index k = count - 1; k >= 0; --k) {
       const auto* column = factor_.data() + front->columns_at + k * height;
       const auto known = conjugate_dot(column + k + 1, tail.data() + k + 1, height - k - 1);
       tail[k] = (reduced_[front->first + k] - known) / column[k].real();
     }
-    x.segment(front->first, count) = tail.head(count);
+    std::copy_n(tail.begin(), count, &solved_[front->first]);
   }
-  Eigen::VectorXcd of_nodes(x.size());
-  for (Eigen::Index i = 0; i < x.size(); ++i) of_nodes[node_[i]] = x[i];
-  return of_nodes;
+  for (Eigen::Index i = 0; i < solved_.size(); ++i) solution_[node_[i]] = solved_[i];
+  return solution_;
 }
 
 }  // namespace pectinate::detail

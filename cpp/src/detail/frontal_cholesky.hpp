@@ -36,11 +36,15 @@ class FrontalCholesky {
   /// The same for another right hand side alone.
   void replace(const Eigen::VectorXcd& right_hand_side);
 
-  /// Of the last system.
-  Eigen::VectorXcd solution() const;
+  /// Of the last system, per node; holds until the next call.
+  const Eigen::VectorXcd& solution();
 
  private:
   using Block = Eigen::MatrixXcd;
+  /// A complex matrix as two real ones, whose products are nearly twice as fast.
+  struct Planes {
+    Eigen::MatrixXd real, imaginary;
+  };
   /// An entry below the diagonal: its row, and the edge that it comes from, conjugated or not.
   struct Entry {
     std::int32_t row, edge;
@@ -55,7 +59,7 @@ class FrontalCholesky {
     std::vector<std::int32_t> children;
     bool keeps_contribution = true;
     std::size_t columns_at = 0;  ///< in the factor: (count + rows) x count
-    Block contribution;          ///< to the parent: rows x rows, lower triangle
+    Planes contribution;         ///< to the parent: rows x rows, lower triangle
     Eigen::VectorXcd passed_on;  ///< of the right hand side, to the rows
   };
 
@@ -70,8 +74,12 @@ class FrontalCholesky {
   Eigen::Map<const Block> columns(const Front& front) const {
     return {factor_.data() + front.columns_at, front.count + static_cast<Eigen::Index>(front.rows.size()), front.count};
   }
+  Eigen::Map<Block> columns(const Front& front) {
+    return {factor_.data() + front.columns_at, front.count + static_cast<Eigen::Index>(front.rows.size()), front.count};
+  }
   void factorize(Front& front, const HermitianMatrix& matrix);
-  void assemble(const Front& front, const HermitianMatrix& matrix, Eigen::Ref<Block> dense);
+  void assemble(Front& front, const HermitianMatrix& matrix);
+  void contribute(Front& front, const Front& child);
   void substitute(Front& front, const Eigen::VectorXcd& right_hand_side);
 
   std::vector<std::int32_t> place_;    ///< in the order of elimination, per node
@@ -83,9 +91,8 @@ class FrontalCholesky {
   /// One after the other, because reading it is what takes time: the columns of all fronts, and the right hand side
   /// after substitution, per place.
   Eigen::VectorXcd factor_, reduced_;
-  // Scratch space.
-  std::vector<std::int32_t> local_;
-  Block dense_;
+  Eigen::VectorXcd solved_, solution_;  ///< per place, per node
+  std::vector<std::int32_t> local_;     ///< scratch space
 };
 
 }  // namespace pectinate::detail

@@ -29,6 +29,11 @@ Sample sample(const Ellipsoid& ellipsoid, const Vector& point) {
   return {level / slope, half_gradient / slope - level / (slope * slope * slope) * curvature_term};
 }
 
+Sample sample(const Ball& ball, const Vector& point) {
+  const double distance = (point - ball.centre).norm();
+  return {distance - ball.radius, (point - ball.centre) / std::max(distance, 1e-9)};
+}
+
 Sample sample(const RoundCone& cone, const Vector& point) {
   const Vector axis = cone.axis();
   const double length = (cone.end - cone.start).norm();
@@ -40,19 +45,50 @@ Sample sample(const RoundCone& cone, const Vector& point) {
   const Vector radial = from_start - along * axis;
   const double across = radial.norm();
   const double foot = along * cosine - across * sine;
-  const auto sphere = [&](const Vector& centre, double radius) {
-    const double distance = (point - centre).norm();
-    return Sample{distance - radius, (point - centre) / std::max(distance, 1e-9)};
-  };
-  if (foot < 0) return sphere(cone.start, cone.start_radius);
-  if (foot > cosine * length) return sphere(cone.end, cone.end_radius);
+  if (foot < 0) return sample(Ball{cone.start, cone.start_radius}, point);
+  if (foot > cosine * length) return sample(Ball{cone.end, cone.end_radius}, point);
   return {across * cosine + along * sine - cone.start_radius, cosine / std::max(across, 1e-9) * radial + sine * axis};
+}
+
+Sample sample(const HalfSpace& half_space, const Vector& point) {
+  return {half_space.normal.dot(point - half_space.point), half_space.normal};
 }
 
 Sample smooth_union(const Sample& a, const Sample& b, double width) {
   const auto& [inner, outer] = a.value < b.value ? std::tie(a, b) : std::tie(b, a);
   const double h = std::max(1 - (outer.value - inner.value) / width, 0.0);
   return {inner.value - h * h * h * width / 6, inner.gradient + h * h / 2 * (outer.gradient - inner.gradient)};
+}
+
+Sample smooth_intersection(const Sample& a, const Sample& b, double width) {
+  const auto complement = [](const Sample& at) { return Sample{-at.value, -at.gradient}; };
+  return complement(smooth_union(complement(a), complement(b), width));
+}
+
+Sample unit_slope(const Sample& at) {
+  const double slope = std::max(at.gradient.norm(), 1e-9);
+  return {at.value / slope, at.gradient / slope};
+}
+
+Cut make_cut(const PlanarCut& plane) {
+  const auto function = [plane](const Vector& point) { return Sample{plane.height(point), plane.normal}; };
+  return {function, plane.centre, plane.radius};
+}
+
+Box bounds(const Ellipsoid& ellipsoid) {
+  return {ellipsoid.centre - ellipsoid.radii, ellipsoid.centre + ellipsoid.radii};
+}
+
+Box bounds(const RoundCone& cone) {
+  return enclose(widen({cone.start, cone.start}, cone.start_radius), widen({cone.end, cone.end}, cone.end_radius));
+}
+
+Box enclose(const Box& a, const Box& b) {
+  return {a.lower.cwiseMin(b.lower), a.upper.cwiseMax(b.upper)};
+}
+
+Box widen(const Box& box, double margin) {
+  return {(box.lower.array() - margin).matrix(), (box.upper.array() + margin).matrix()};
 }
 
 Vector project(const ImplicitSurface& surface, const Vector& point) {
@@ -65,13 +101,14 @@ Vector project(const ImplicitSurface& surface, const Vector& point) {
   return moved;
 }
 
-Vector project_to_border(const ImplicitSurface& surface, const PlanarCut& cut, const Vector& point) {
+Vector project_to_border(const ImplicitSurface& surface, const Cut& cut, const Vector& point) {
   Vector moved = point;
   for (int step = 0; step < max_newton_steps; ++step) {
-    moved -= cut.height(moved) * cut.normal;
-    const Sample at = surface.function(moved);
-    if (std::abs(at.value) < on_surface) break;
-    moved += newton_step(at, at.gradient - cut.normal.dot(at.gradient) * cut.normal);
+    const Sample above = cut.function(moved);
+    moved -= above.value * above.gradient;
+    const Sample at = surface.function(moved), along = cut.function(moved);
+    if (std::abs(at.value) < on_surface && std::abs(along.value) < on_surface) break;
+    moved += newton_step(at, at.gradient - along.gradient.dot(at.gradient) * along.gradient);
   }
   return moved;
 }

@@ -2,25 +2,18 @@
 #pragma once
 
 #include <array>
-#include <string>
 
 #include "detail/implicit_surface.hpp"
+#include "detail/sleeve.hpp"
 
 namespace pectinate::detail {
-
-/// A sleeve that leaves the body; its cone runs on beyond the cut.
-struct PulmonaryVein {
-  std::string name;
-  RoundCone sleeve;
-  PlanarCut ostium;
-};
 
 /// Parts of a dilated left atrium, in mm; x to the patient's left, y to posterior, z to superior.
 struct LeftAtrium {
   Ellipsoid chamber;
   RoundCone vestibule;  ///< leads to the mitral valve
   PlanarCut mitral_valve;
-  std::array<PulmonaryVein, 4> veins;
+  std::array<Sleeve, 4> veins;
   std::array<RoundCone, 2> appendage;  ///< from its mouth to the bend, from there to the tip
 };
 

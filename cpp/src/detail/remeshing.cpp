@@ -28,7 +28,7 @@ struct MeshTraits : OpenMesh::DefaultTraitsDouble {
   EdgeAttributes(OpenMesh::Attributes::Status);
   FaceAttributes(OpenMesh::Attributes::Status);
   VertexTraits {
-    const PlanarCut* border = nullptr;  // none in the interior
+    const Cut* border = nullptr;  // none in the interior
   };
 };
 using Mesh = OpenMesh::TriMesh_ArrayKernelT<MeshTraits>;
@@ -83,7 +83,7 @@ class Remesher {
     }
   }
 
-  void cut(const PlanarCut& cut) {
+  void cut(const Cut& cut) {
     std::vector<double> heights;
     for (const Vertex vertex : mesh_.vertices()) heights.push_back(snap(vertex, cut));
     for (const Edge edge : edges()) {
@@ -105,7 +105,7 @@ class Remesher {
       const auto corners = face.vertices().to_array<3>();
       result.surface.triangles.push_back({corners[0].idx(), corners[1].idx(), corners[2].idx()});
     }
-    for (const PlanarCut& cut : surface_.cuts) result.loops.push_back(loop(cut));
+    for (const Cut& cut : surface_.cuts) result.loops.push_back(loop(cut));
     return result;
   }
 
@@ -113,19 +113,19 @@ class Remesher {
   Eigen::Map<const Vector> point(Vertex vertex) const { return Eigen::Map<const Vector>(mesh_.point(vertex).data()); }
   Vector middle(Edge edge) const { return (point(edge.v0()) + point(edge.v1())) / 2; }
   Vertex split(Edge edge, const Vector& point) { return mesh_.split(edge, openmesh_point(point)); }
-  const PlanarCut* border(Vertex vertex) const { return mesh_.data(vertex).border; }
+  const Cut* border(Vertex vertex) const { return mesh_.data(vertex).border; }
 
   void move(Vertex vertex, const Vector& point) { mesh_.set_point(vertex, openmesh_point(point)); }
 
   /// The edges of now: those that a loop over them creates are left to the next one.
   std::vector<Edge> edges() const { return mesh_.edges().to_vector(); }
 
-  Vector on_surface(const Vector& point, const PlanarCut* border) const {
+  Vector on_surface(const Vector& point, const Cut* border) const {
     return border ? project_to_border(surface_, *border, point) : project(surface_, point);
   }
 
   /// Height above the cut, negative where out of its reach. A vertex close to the plane is moved onto it.
-  double snap(Vertex vertex, const PlanarCut& cut) {
+  double snap(Vertex vertex, const Cut& cut) {
     if (!cut.reaches(point(vertex))) return -edge_length_;
     const double height = cut.height(point(vertex));
     if (std::abs(height) > snapping_share * edge_length_) return height;
@@ -136,7 +136,7 @@ class Remesher {
   void split_long_edges() {
     for (const Edge edge : edges()) {
       if (mesh_.calc_edge_length(edge) < 4.0 / 3 * edge_length_) continue;
-      const PlanarCut* const edge_border = edge.is_boundary() ? border(edge.v0()) : nullptr;
+      const Cut* const edge_border = edge.is_boundary() ? border(edge.v0()) : nullptr;
       const Vertex added = split(edge, on_surface(middle(edge), edge_border));
       mesh_.data(added).border = edge_border;
     }
@@ -218,7 +218,7 @@ class Remesher {
     for (const Vertex vertex : mesh_.vertices()) move(vertex, moved[vertex.idx()]);
   }
 
-  std::vector<std::int32_t> loop(const PlanarCut& cut) const {
+  std::vector<std::int32_t> loop(const Cut& cut) const {
     std::vector<std::int32_t> loop;
     const auto starts_on_cut = [&](Halfedge halfedge) {
       return halfedge.is_boundary() && border(halfedge.from()) == &cut;
@@ -262,7 +262,7 @@ std::pair<std::int32_t, std::int32_t> edge_key(std::int32_t a, std::int32_t b) {
 CutTriangles remesh(const IndexedTriangles& closed, const ImplicitSurface& surface, double edge_length) {
   Remesher remesher(closed, surface, edge_length);
   remesher.improve(closed_iterations);
-  for (const PlanarCut& cut : surface.cuts) remesher.cut(cut);
+  for (const Cut& cut : surface.cuts) remesher.cut(cut);
   remesher.improve(open_iterations);
   remesher.polish(polishing_iterations);
   CutTriangles result = remesher.result();
@@ -276,7 +276,7 @@ CutTriangles subdivide(const CutTriangles& coarse, const ImplicitSurface& surfac
   CutTriangles fine{coarse.surface, {}};
   auto& [vertices, triangles] = fine.surface;
   Middles middles;
-  const auto middle_of = [&](std::int32_t a, std::int32_t b, const PlanarCut* border) {
+  const auto middle_of = [&](std::int32_t a, std::int32_t b, const Cut* border) {
     const auto [entry, is_new] = middles.try_emplace(edge_key(a, b), static_cast<std::int32_t>(vertices.size()));
     const Vector middle = (vertices[a] + vertices[b]) / 2;
     if (is_new) vertices.push_back(border ? project_to_border(surface, *border, middle) : project(surface, middle));

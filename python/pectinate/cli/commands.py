@@ -9,7 +9,6 @@ from pathlib import Path
 import pectinate
 from pectinate.cli import report
 from pectinate.cli.files import (
-    OutputError,
     check_figure,
     check_folders,
     check_suffixes,
@@ -19,16 +18,17 @@ from pectinate.cli.files import (
     writing,
 )
 from pectinate.cli.progress import ProgressBar
-from pectinate.datasets import demo_atrium
 from pectinate.errors import InvalidField
 from pectinate.model import Model
 from pectinate.placement import DEFAULTS, Placement
+from pectinate.viewer.page import SUFFIXES as PAGE_SUFFIXES
 
 _TUBE_SUFFIXES = frozenset({".ply", ".obj", ".glb"})
-_SUFFIXES = frozenset({".npz", ".vtp"}) | _TUBE_SUFFIXES
+_SUFFIXES = frozenset({".npz", ".vtp", *PAGE_SUFFIXES}) | _TUBE_SUFFIXES
 # The keywords of the library by argument, where they are given.
 _TUBE_OPTIONS = {"tube_radius": "radius", "taper_length": "taper_length", "side_count": "side_count"}
 _FIGURE_OPTIONS = {name: name for name in ("views", "tube_radius", "taper_length", "side_count")}
+_PAGE_OPTIONS = {name: name for name in ("views", "tube_radius", "taper_length")}
 
 
 def place(arguments: argparse.Namespace) -> None:
@@ -42,23 +42,11 @@ def place(arguments: argparse.Namespace) -> None:
 
 def info(arguments: argparse.Namespace) -> None:
     """Describe the surface and the field of a file."""
-    summary = with_loop_names(load_surface(arguments), arguments).summary()
+    summary = with_loop_names(load_surface(arguments), arguments.tracts).summary()
     if arguments.json:
         report.print_json(summary)
     elif not arguments.quiet:
         report.print_rows(report.surface_rows(summary) + report.topology_rows(summary))
-
-
-def demo(arguments: argparse.Namespace) -> None:
-    """Place streamlines on the demo atrium, save and draw them in a folder."""
-    model = demo_atrium(**given(arguments, {"edge_length": "edge_length"}))
-    try:
-        arguments.out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(str(error)) from error
-    arguments.outputs, arguments.tubes = [arguments.out / "demo_atrium.npz"], []
-    arguments.figure = arguments.out / "demo_atrium.png"
-    _place(model, arguments)
 
 
 def _place(model: Model, arguments: argparse.Namespace) -> None:
@@ -94,12 +82,16 @@ def _write(placement: Placement, arguments: argparse.Namespace) -> None:
     """Save and draw what was asked for."""
     with writing():
         for path in _saved_files(arguments):
-            tubes = path.suffix.lower() in _TUBE_SUFFIXES
-            placement.save(path, **(given(arguments, _TUBE_OPTIONS) if tubes else {}))
+            placement.save(path, **given(arguments, _save_options(path)))
         if arguments.figure is not None:
             with ProgressBar("drawing", enabled=not arguments.quiet) as bar:
                 bar(0)
                 placement.figure(arguments.figure, **given(arguments, _FIGURE_OPTIONS))
+
+
+def _save_options(path: Path) -> dict[str, str]:
+    suffix = path.suffix.lower()
+    return _PAGE_OPTIONS if suffix in PAGE_SUFFIXES else _TUBE_OPTIONS if suffix in _TUBE_SUFFIXES else {}
 
 
 def _check_outputs(arguments: argparse.Namespace) -> None:
