@@ -20,7 +20,7 @@ constexpr float size_slack = 4e-7F, distance_slack = 4e-6F;
 
 /// Segments that deviate less than this, in separation distances, from a straight line are first looked at as one.
 constexpr double coarse_tolerance = 0.03;
-constexpr int most_joined = 8;
+constexpr std::size_t most_joined = 8;
 
 /// In place of a neighbour: a border, or more than two triangles at the edge.
 constexpr std::int32_t none = -1;
@@ -185,12 +185,15 @@ void ChordOccupancy::simplify_block(const Polyline& line, std::size_t first) {
   const double tolerance = coarse_tolerance * block_.separation[0];
   double error = 0;
   const auto last = first + static_cast<std::size_t>(block_.segments.count);
-  for (auto from = first, to = first; from < last; from = to) {
-    for (double next = 0; next <= tolerance; next = deviation(from, to + 1)) {
+  for (auto from = first; from < last;) {
+    auto to = from + 1;
+    for (; to < last && to - from < most_joined; ++to) {
+      const double next = deviation(from, to + 1);
+      if (next > tolerance) break;
       error = std::max(error, next);
-      if (++to == last || to - from == most_joined) break;
     }
     coarse.add(line.points[from] - origin_, line.points[to] - line.points[from]);
+    from = to;
   }
   block_.coarse_error = static_cast<float>(error) * (1 + distance_slack) + slack_;
   coarse.fill_up();

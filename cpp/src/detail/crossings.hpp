@@ -31,7 +31,7 @@ struct alignas(32) TriangleCrossings {
   double split;                            ///< 0 in a triangle without a direction
   std::array<std::int32_t, 3> neighbours;  ///< by Role, also where streamlines stop; -1 at borders
   std::array<std::uint8_t, 3> codes;       ///< by Role: see `make_code`
-  std::int8_t middle;                      ///< the corner that the side low-high misses
+  std::uint8_t middle;                     ///< the corner that the side low-high misses
   float longest_chord;                     ///< through the middle corner
   float width;                             ///< across the field, from the low corner to the high one
 

@@ -16,7 +16,7 @@ void prefer_large_pages(void* memory, std::size_t size);
 template <class T>
 class LargePageAllocator {
  public:
-  using value_type = T;
+  using value_type = T;  // NOLINT(readability-identifier-naming): the standard's name
 
   LargePageAllocator() = default;
   template <class U>

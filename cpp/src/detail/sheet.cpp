@@ -72,7 +72,7 @@ Sides measure_chords(const Face& face, TriangleCrossings& crossings) {
   }
   const int m = corner_between(rise);
   const int opposite = (m + 1) % 3;
-  crossings.middle = static_cast<std::int8_t>(m);
+  crossings.middle = static_cast<std::uint8_t>(m);
   crossings.split = std::clamp(-rise[m] / rise[opposite], least_split, 1 - least_split);
   crossings.longest_chord = static_cast<float>(std::abs(run[m] + crossings.split * run[opposite]));
   crossings.width = static_cast<float>(std::abs(rise[opposite]));
