@@ -22,6 +22,9 @@ void check(AtrialSurface which, AtrialLayer layer, double edge_length) {
   if (!(edge_length >= shortest_edge && edge_length <= longest_edge)) {
     throw InvalidOption("edge_length is " + std::to_string(edge_length) + " mm, but must be in [0.1, 2]");
   }
+  if (layer != AtrialLayer::epicardium && layer != AtrialLayer::endocardium) {
+    throw InvalidOption("there is no atrial layer number " + std::to_string(static_cast<int>(layer)));
+  }
   if (which == AtrialSurface::bachmann_bundle && layer == AtrialLayer::endocardium) {
     throw InvalidOption("Bachmann's bundle has no endocardium; ask for its epicardium");
   }
@@ -33,9 +36,10 @@ Chamber make_chamber(AtrialSurface which) {
       return detail::make_left_chamber();
     case AtrialSurface::right_atrium:
       return detail::make_right_chamber();
-    default:
+    case AtrialSurface::bachmann_bundle:
       return detail::make_bachmann_bundle();
   }
+  throw InvalidOption("there is no atrial surface number " + std::to_string(static_cast<int>(which)));
 }
 
 detail::ImplicitSurface make_surface(const Chamber& chamber, AtrialLayer layer) {

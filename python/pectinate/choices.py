@@ -20,6 +20,6 @@ def member(choices: type[_Choice], name: str, value: Any) -> _Choice:
     """
     try:
         return choices[value]
-    except KeyError:
+    except (KeyError, TypeError):
         names = ", ".join(choices.__members__)
         raise InvalidOption(f"{name} is {value!r}, but must be one of {names}") from None

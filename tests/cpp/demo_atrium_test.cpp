@@ -5,7 +5,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,6 +12,7 @@
 
 #include "detail/left_atrium.hpp"
 #include "detail/vec.hpp"
+#include "generated_checks.hpp"
 #include "pectinate/errors.hpp"
 #include "pectinate/surface_mesh.hpp"
 
@@ -26,39 +26,10 @@ Vector corner(const DemoAtrium& atrium, std::size_t t, int k) {
   return vector(atrium.vertices[atrium.triangles[t][k % 3]]);
 }
 
-std::vector<double> least_angles(const DemoAtrium& atrium) {
-  std::vector<double> angles;
-  for (std::size_t t = 0; t < atrium.triangles.size(); ++t) {
-    double least = std::numbers::pi;
-    for (int k = 0; k < 3; ++k) {
-      const Vector a = corner(atrium, t, k + 1) - corner(atrium, t, k);
-      const Vector b = corner(atrium, t, k + 2) - corner(atrium, t, k);
-      least = std::min(least, std::atan2(a.cross(b).norm(), a.dot(b)));
-    }
-    angles.push_back(least * 180 / std::numbers::pi);
-  }
-  std::sort(angles.begin(), angles.end());
-  return angles;
-}
-
 TEST_CASE("the demo atrium is one surface with five openings, wound outwards, of good triangles") {
   for (const double edge_length : {4.0, 2.0, 0.7}) {
     CAPTURE(edge_length);
-    const auto atrium = make_demo_atrium({edge_length});
-    const SurfaceMesh mesh(atrium.vertices, atrium.triangles);
-    REQUIRE(mesh.components().size() == 1);
-    CHECK(mesh.triangle_count() == atrium.triangles.size());
-    CHECK(mesh.components()[0].euler_characteristic == -3);
-    CHECK(mesh.components()[0].genus == 0);
-    CHECK(mesh.boundary_loops().size() == 5);
-    CHECK(mesh.repairs().reversed_triangles.empty());
-    CHECK(mesh.repairs().split_vertices.empty());
-    const auto angles = least_angles(atrium);
-    CHECK(angles.front() > 15);
-    CHECK(angles[angles.size() / 100] > 35);
-    double sum = 0;
-    for (const double length : mesh.edge_lengths()) sum += length;
-    CHECK(sum / static_cast<double>(mesh.edge_lengths().size()) == doctest::Approx(edge_length).epsilon(0.05));
+    test::check_good_surface(make_demo_atrium({edge_length}), 5, edge_length);
   }
 }
 
@@ -122,23 +93,7 @@ TEST_CASE("the directions are unit and tangent, parallel to the openings, and sm
 
 TEST_CASE("consecutive vertices of the loops are the open sides of the surface, which lies on their left") {
   for (const double edge_length : {4.0, 0.7}) {  // remeshed only, and subdivided
-    const auto atrium = make_demo_atrium({edge_length});
-    const SurfaceMesh mesh(atrium.vertices, atrium.triangles);
-    std::vector<std::array<std::int32_t, 2>> open_sides, loop_sides;
-    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t) {
-      const auto& corners = atrium.triangles[t];
-      for (int k = 0; k < 3; ++k) {
-        if (mesh.neighbour(t, k).triangle < 0) open_sides.push_back({corners[k], corners[(k + 1) % 3]});
-      }
-    }
-    for (const auto& [name, vertices] : atrium.loops) {
-      for (std::size_t i = 0; i < vertices.size(); ++i) {
-        loop_sides.push_back({vertices[i], vertices[(i + 1) % vertices.size()]});
-      }
-    }
-    std::sort(open_sides.begin(), open_sides.end());
-    std::sort(loop_sides.begin(), loop_sides.end());
-    CHECK(loop_sides == open_sides);
+    test::check_loops_are_the_open_sides(make_demo_atrium({edge_length}));
   }
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "pectinate/demo_atrium.hpp"
+#include "pectinate/named_loop.hpp"
 #include "pectinate/types.hpp"
 
 namespace pectinate {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "pectinate/named_loop.hpp"
 #include "pectinate/types.hpp"
 
 namespace pectinate {
@@ -12,12 +13,6 @@ namespace pectinate {
 struct DemoAtriumOptions {
   /// Target edge length in mm, in [0.2, 4]. 1 mm gives about 43,000 triangles.
   double edge_length = 1.0;
-};
-
-/// A closed border of the generated surface: `vertices` in order along it, the surface on their left, no repetition.
-struct NamedLoop {
-  std::string name;
-  std::vector<std::int32_t> vertices;
 };
 
 /// An atrium-like surface with a smooth orientation field, in millimetres; x to the patient's left, y to posterior,

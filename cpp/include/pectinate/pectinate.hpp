@@ -9,6 +9,7 @@
 #include "pectinate/field_topology.hpp"
 #include "pectinate/interpolation.hpp"
 #include "pectinate/landmark_warp.hpp"
+#include "pectinate/named_loop.hpp"
 #include "pectinate/occupancy.hpp"
 #include "pectinate/orientation_field.hpp"
 #include "pectinate/parameterization.hpp"

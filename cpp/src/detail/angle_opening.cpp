@@ -20,8 +20,12 @@ constexpr double first_step = 0.15, last_step = 0.003;  // of the edge length
 class AngleOpener {
  public:
   AngleOpener(CutTriangles& mesh, const ImplicitSurface& surface, double edge_length)
-      : vertices_(mesh.surface.vertices), triangles_(mesh.surface.triangles), surface_(surface),
-        edge_length_(edge_length), stars_(vertices_.size()), borders_(vertices_.size(), nullptr),
+      : vertices_(mesh.surface.vertices),
+        triangles_(mesh.surface.triangles),
+        surface_(surface),
+        edge_length_(edge_length),
+        stars_(vertices_.size()),
+        borders_(vertices_.size(), nullptr),
         steps_(vertices_.size(), first_step * edge_length) {
     for (const Triangle& triangle : triangles_)
       for (const std::int32_t v : triangle) stars_[v].push_back(triangle);

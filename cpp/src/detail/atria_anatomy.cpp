@@ -103,11 +103,13 @@ Chamber make_right_chamber() {
   Builder builder({Vector(-19, -9, -2), Vector(20, 19, 26)}, {Vector(-17, -11, -7), Vector(-5, -24, -18), 20, 19.5},
                   septum.right_side(), "tricuspid_valve");
   builder.add(make_sleeve("superior_vena_cava", {-24, -5, 14}, {-25, -3, 40}, 9), 10);
-  builder.add(make_sleeve("inferior_vena_cava", {-22, -1, -18}, {-23, 6, -37}, 11), 10);
-  builder.add(make_sleeve("coronary_sinus", {-9, -5, -17}, {2, 1, -26.5}, 5), 6);
+  builder.add(make_sleeve("inferior_vena_cava", {-23, 0, -18}, {-24, 8, -37}, 11), 10);
+  builder.add(make_sleeve("coronary_sinus", {-10, -3, -18}, {2, 4, -27}, 5), 6);
   const RoundCone upper{Vector(-20, -18, 13), Vector(-4, -42, 19), 11, 4.5};
   const RoundCone lower{Vector(-23, -22, 3), Vector(-4, -42, 19), 11, 4.5};
-  const auto appendage = [=](const Vector& point) { return smooth_union(sample(upper, point), sample(lower, point), 8); };
+  const auto appendage = [=](const Vector& point) {
+    return smooth_union(sample(upper, point), sample(lower, point), 8);
+  };
   builder.add({"right_atrial_appendage", appendage}, 8, enclose(bounds(upper), bounds(lower)));
   builder.open("fossa_ovalis", septum.fossa());
   return builder.finish();
@@ -119,8 +121,9 @@ Chamber make_bachmann_bundle() {
   const auto above = [=](const Vector& point) {
     return offset(smooth_union(left(point), right(point), groove_fillet), height);
   };
-  const Band band = lay_band(above, {{-31, -17, 21}, {-18, -15, 22}, {-4, -8, 18}, {8, -8, 14}, {20, -10, 13}, {28, -6, 16}},
-                             {4, 5.5, 5.5, 5.5, 5, 3.5});
+  const Band band =
+      lay_band(above, {{-31, -17, 21}, {-18, -15, 22}, {-4, -8, 18}, {8, -8, 14}, {20, -10, 13}, {28, -6, 16}},
+               {4, 5.5, 5.5, 5.5, 5, 3.5});
   Chamber bundle{{{"bachmann_bundle", above}}, above, {}, widen(band.bounds, 4)};
   const auto outside = [band](const Vector& point) { return sample(band, point); };
   const Vector centre = (band.bounds.lower + band.bounds.upper) / 2;

@@ -23,7 +23,8 @@ class BentCone {
   Sample sample_end(const Vector& point) const;
 
   Ends ends_;
-  Vector forward_, inward_, across_;  ///< at the start: along the arc, towards the circle's centre, normal to the circle
+  Vector forward_, inward_,
+      across_;  ///< at the start: along the arc, towards the circle's centre, normal to the circle
   double arc_radius_, arc_angle_;
 };
 

@@ -43,8 +43,7 @@ Sample sample_appendage(const LeftAtrium& atrium, const Vector& point) {
 ImplicitSurface make_surface(const LeftAtrium& atrium) {
   const auto function = [atrium](const Vector& point) {
     Sample blended = sample_body(atrium, point);
-    for (const Sleeve& vein : atrium.veins)
-      blended = smooth_union(blended, sample(vein.cone, point), vein_fillet);
+    for (const Sleeve& vein : atrium.veins) blended = smooth_union(blended, sample(vein.cone, point), vein_fillet);
     return smooth_union(blended, sample_appendage(atrium, point), appendage_fillet);
   };
   ImplicitSurface surface{function, {make_cut(atrium.mitral_valve)}, bounds(atrium)};
