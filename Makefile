@@ -10,6 +10,8 @@ BUILD_TYPE ?= Release
 
 APT_PACKAGES := g++ cmake ninja-build libopenmesh-dev libeigen3-dev libcgal-dev libmetis-dev doctest-dev \
   python3-venv python3-dev libgl1 libegl1 libgl1-mesa-dri libosmesa6
+# A browser, for the tests of interactive pages.
+TEST_APT_PACKAGES := chromium chromium-driver
 SUDO := $(if $(filter 0,$(shell id -u)),,sudo)
 
 VENV := .venv
@@ -43,6 +45,7 @@ test-cpp: | system  ## build and test the C++ library
 
 .PHONY: test-python
 test-python: $(STAMPS)/installed  ## test the Python package
+	@$(MAKE) --no-print-directory system-test || echo "no browser: the tests that need one will be skipped" >&2
 	@$(BIN)/python -m pytest
 
 .PHONY: lint
@@ -82,11 +85,13 @@ clean:  ## remove everything that was made
 	rm -rf $(VENV) build demo
 
 # Installs the Debian packages that are missing; asks nothing of the network when there are none.
-.PHONY: system
-system:
-	@command -v dpkg-query >/dev/null || { echo "not a Debian system: install by hand: $(APT_PACKAGES)"; exit 0; }; \
+.PHONY: system system-test
+system: PACKAGES := $(APT_PACKAGES)
+system-test: PACKAGES := $(TEST_APT_PACKAGES)
+system system-test:
+	@command -v dpkg-query >/dev/null || { echo "not a Debian system: install by hand: $(PACKAGES)"; exit 0; }; \
 	missing=; \
-	for package in $(APT_PACKAGES); do \
+	for package in $(PACKAGES); do \
 	  [[ "$$(dpkg-query -W -f '$${db:Status-Status}' $$package 2>/dev/null)" == installed ]] || missing+=" $$package"; \
 	done; \
 	[[ -n "$$missing" ]] || exit 0; \
@@ -105,7 +110,7 @@ $(STAMPS)/environment: | system
 
 $(STAMPS)/requirements: pyproject.toml .ci/requirements $(STAMPS)/environment
 	@echo "installing what pectinate needs into $(VENV)"
-	@$(BIN)/python .ci/requirements vtk figures test >$@.txt
+	@$(BIN)/python .ci/requirements vtk figures tables test >$@.txt
 	@$(PIP_INSTALL) -r $@.txt
 	@touch $@
 

@@ -36,7 +36,8 @@ std::vector<Triangle> convert(const py::array& array) {
       const bool is_index = number >= Number(0) && number <= Number(std::numeric_limits<std::int32_t>::max()) &&
                             number == static_cast<Number>(static_cast<std::int64_t>(number));
       if (!is_index) {
-        throw InvalidMesh("triangle " + std::to_string(t) + " refers to vertex " + std::to_string(number) +
+        throw InvalidMesh("triangle " + std::to_string(t) + " refers to vertex " +
+                          std::string(py::str(py::cast(number))) +
                           ", which is no vertex index; indices are whole numbers from 0");
       }
       triangles[static_cast<std::size_t>(t)][static_cast<std::size_t>(k)] = static_cast<std::int32_t>(number);

@@ -2,6 +2,7 @@
 #include <pybind11/native_enum.h>
 #include <pybind11/stl.h>
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -21,7 +22,10 @@ points : (n, 3) float
 name : str
     For messages.
 weight : float
-    Positive; infinity (the default) means exactly, 1 pulls about as much as one neighbouring triangle.)";
+    From `LEAST_WEIGHT` to `GREATEST_WEIGHT`, or infinity (the default), which means exactly; 1 pulls about as much as
+    one neighbouring triangle.
+number : int, optional
+    For messages; by default its index among those given.)";
 
 constexpr auto projected_doc = R"(A tract on the surface.
 
@@ -79,8 +83,8 @@ Raises
 ------
 InvalidOption
     Naming the tract or the condition: fewer than two distinct points, a point that is not finite or too far away,
-    consecutive points on different components, a loop that does not exist or is given twice, a weight that is not
-    positive, an option out of its range.)";
+    consecutive points on different components, a loop that does not exist or is given twice, a weight or an option out
+    of its range.)";
 
 constexpr auto nearest_doc = R"(The point of the surface nearest to each point.
 
@@ -132,14 +136,18 @@ void bind_input(py::module_& module) {
       .value("perpendicular", BoundaryRule::perpendicular)
       .finalize();
   py::class_<Tract>(module, "Tract", tract_doc)
-      .def(py::init([](const py::array& points, std::string name, double weight) {
+      .def(py::init([](const py::array& points, std::string name, double weight, std::optional<std::int32_t> number) {
              const Rows<3> rows(points, "points");
-             return Tract{std::move(name), {rows.span().begin(), rows.span().end()}, weight};
+             return Tract{std::move(name), {rows.span().begin(), rows.span().end()}, weight, number};
            }),
-           py::arg("points"), py::kw_only(), py::arg("name") = "", py::arg("weight") = hard)
+           py::arg("points"), py::kw_only(), py::arg("name") = "", py::arg("weight") = hard,
+           py::arg("number") = py::none())
       .def_readonly("name", &Tract::name)
       .def_property_readonly("points", viewed<Tract>(&Tract::points))
-      .def_readonly("weight", &Tract::weight);
+      .def_readonly("weight", &Tract::weight)
+      .def_readonly("number", &Tract::number);
+  module.attr("LEAST_WEIGHT") = least_weight;
+  module.attr("GREATEST_WEIGHT") = greatest_weight;
   py::class_<BoundaryCondition>(module, "BoundaryCondition",
                                 "What fibres do at a boundary loop (an index into `mesh.boundary_loops`).")
       .def(py::init([](std::int32_t loop, BoundaryRule rule, double weight) {

@@ -13,7 +13,7 @@ Attributes
 field : OrientationField
 confidence : (T,) float64
     In [0, 1], per mesh triangle: the magnitude of the interpolated phase exp(2 i theta). Near 0 around singularities and
-    where constraints disagree.)";
+    where constraints disagree; small too, on curved surfaces, where only weak weights act.)";
 
 constexpr auto interpolator_doc = R"(Interpolates orientations over a surface: the smoothest phase under constraints.
 
@@ -37,7 +37,7 @@ constexpr auto interpolate_doc = R"(The field under these constraints; hard ones
 Raises
 ------
 InvalidField
-    Constraints of another mesh.)";
+    Constraints of another mesh, or a weight out of its range.)";
 
 FieldInterpolator make(const SurfaceMesh& mesh, const ReferenceFrame* frame) {
   const py::gil_scoped_release release;

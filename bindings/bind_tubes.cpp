@@ -15,6 +15,7 @@ void bind_tubes(py::module_& module) {
       .def_property_readonly("vertex_offsets", viewed<Tubes>(&Tubes::vertex_offsets))
       .def_property_readonly("triangle_offsets", viewed<Tubes>(&Tubes::triangle_offsets));
   const TubeOptions defaults;
+  module.attr("default_taper_length") = defaults.taper_length;
   module.def(
       "make_tubes",
       [](const SurfaceMesh& mesh, const Placement& placement, double radius, double taper_length, int side_count) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "detail/atria_anatomy.hpp"
+#include "detail/number_text.hpp"
 #include "detail/surface_generation.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/errors.hpp"
@@ -20,7 +21,7 @@ constexpr double shortest_edge = 0.1, longest_edge = 2;
 
 void check(AtrialSurface which, AtrialLayer layer, double edge_length) {
   if (!(edge_length >= shortest_edge && edge_length <= longest_edge)) {
-    throw InvalidOption("edge_length is " + std::to_string(edge_length) + " mm, but must be in [0.1, 2]");
+    throw InvalidOption("edge_length is " + detail::number_text(edge_length) + " mm, but must be in [0.1, 2]");
   }
   if (layer != AtrialLayer::epicardium && layer != AtrialLayer::endocardium) {
     throw InvalidOption("there is no atrial layer number " + std::to_string(static_cast<int>(layer)));

@@ -10,6 +10,7 @@
 
 #include "detail/field_of_directions.hpp"
 #include "detail/fit_checks.hpp"
+#include "detail/number_text.hpp"
 #include "detail/random.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/errors.hpp"
@@ -73,7 +74,7 @@ OrientationField add_angular_noise(const SurfaceMesh& mesh, const OrientationFie
                                    std::uint64_t random_seed) {
   detail::check_is_on(mesh, field);
   if (!(standard_deviation >= 0 && standard_deviation <= std::numbers::pi)) {
-    throw InvalidOption("standard_deviation is " + std::to_string(standard_deviation) +
+    throw InvalidOption("standard_deviation is " + detail::number_text(standard_deviation) +
                         ", but must be an angle from 0 to pi, in radians");
   }
   if (standard_deviation == 0) return field;

@@ -9,6 +9,7 @@
 #include "detail/boundary_demands.hpp"
 #include "detail/capsule.hpp"
 #include "detail/demands.hpp"
+#include "detail/number_text.hpp"
 #include "detail/tract_projection.hpp"
 #include "detail/triangle_tree.hpp"
 #include "pectinate/errors.hpp"
@@ -19,22 +20,20 @@ namespace {
 using detail::vector;
 
 constexpr double default_maximum_distance = 0.01;  // of the bounding box's diagonal
-/// Beyond this a weight spoils the equations; `hard` does not.
-constexpr double greatest_weight = 1e12;
 
 void check_weight(double weight, const std::string& label) {
-  if ((weight > 0 && weight <= greatest_weight) || weight == hard) return;
-  throw InvalidOption(label + " has the weight " + std::to_string(weight) +
-                      ", but weights are positive and at most 1e12, or hard");
+  if ((weight >= least_weight && weight <= greatest_weight) || weight == hard) return;
+  throw InvalidOption(label + " has the weight " + detail::number_text(weight) +
+                      ", but weights are from 1e-6 to 1e12, or hard; leave out what is to weigh less");
 }
 
 void check(const ConstraintOptions& options) {
   if (!(options.conflict_angle > 0 && options.conflict_angle <= std::numbers::pi / 2)) {
-    throw InvalidOption("conflict_angle is " + std::to_string(options.conflict_angle) +
+    throw InvalidOption("conflict_angle is " + detail::number_text(options.conflict_angle) +
                         ", but must be in (0, pi/2] radians");
   }
   if (options.maximum_distance && !(*options.maximum_distance > 0)) {
-    throw InvalidOption("maximum_distance is " + std::to_string(*options.maximum_distance) +
+    throw InvalidOption("maximum_distance is " + detail::number_text(*options.maximum_distance) +
                         ", but must be positive; leave it out for a hundredth of the mesh's diagonal");
   }
 }

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "detail/left_atrium.hpp"
+#include "detail/number_text.hpp"
 #include "detail/surface_generation.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/errors.hpp"
@@ -28,7 +29,7 @@ constexpr double bachmann_height = 10;
 
 void check(double edge_length) {
   if (!(edge_length >= shortest_edge && edge_length <= longest_edge)) {
-    throw InvalidOption("edge_length is " + std::to_string(edge_length) + " mm, but must be in [0.2, 4]");
+    throw InvalidOption("edge_length is " + detail::number_text(edge_length) + " mm, but must be in [0.2, 4]");
   }
 }
 

@@ -10,6 +10,7 @@
 #include "detail/field_of_directions.hpp"
 #include "detail/fit_checks.hpp"
 #include "detail/mesh_geometry.hpp"
+#include "detail/number_text.hpp"
 #include "pectinate/comparison.hpp"
 #include "pectinate/constraints.hpp"
 #include "pectinate/errors.hpp"
@@ -78,7 +79,7 @@ void check_disk(const SurfaceMesh& mesh, const Parameterization& disk, const std
   }
 }
 
-/// The image of a loop's hole; of the outer loop, the origin.
+/// The image of a loop's hole.
 Vector2d hole_centre(const Parameterization& disk, std::int32_t loop, const std::string& name) {
   const auto loop_name = name + " loop " + std::to_string(loop) + " of loop_pairs";
   const auto loop_count = static_cast<std::int32_t>(disk.loop_centres.size());
@@ -86,7 +87,6 @@ Vector2d hole_centre(const Parameterization& disk, std::int32_t loop, const std:
     throw InvalidOption(loop_name + " does not exist; the surface has boundary loops 0 to " +
                         std::to_string(loop_count - 1));
   }
-  if (loop == disk.outer_loop) return Vector2d::Zero();
   const auto& [x, y] = disk.loop_centres[loop];
   if (!(std::hypot(x, y) <= greatest_radius)) {
     throw InvalidOption(loop_name + " bounds a fragment that has no place in the disk; choose another one");
@@ -156,7 +156,7 @@ Transfer transfer_by_nearest_point(const SurfaceMesh& source, const OrientationF
                                    double maximum_distance) {
   detail::check_is_on(source, field);
   if (!(maximum_distance > 0)) {
-    throw InvalidOption("maximum_distance is " + std::to_string(maximum_distance) +
+    throw InvalidOption("maximum_distance is " + detail::number_text(maximum_distance) +
                         ", but must be positive; infinity sets no limit");
   }
   std::vector<Vec3> centres;

@@ -8,6 +8,7 @@
 
 #include "detail/connection.hpp"
 #include "detail/frontal_cholesky.hpp"
+#include "detail/number_text.hpp"
 #include "detail/phase_system.hpp"
 #include "detail/random.hpp"
 #include "pectinate/errors.hpp"
@@ -113,7 +114,10 @@ class FieldInterpolator::State {
       }
       if (seen[t]) throw InvalidField(which + " is given twice; give one a triangle");
       seen[t] = true;
-      if (!(weight > 0)) throw InvalidField(which + " has a weight that is not positive; leave it out or weight it");
+      if (!(weight >= least_weight && (weight <= greatest_weight || weight == hard))) {
+        throw InvalidField(which + " has the weight " + detail::number_text(weight) +
+                           ", but weights are from 1e-6 to 1e12, or hard; leave it out or weight it");
+      }
       const double height = vector(direction).dot(vector(mesh_.triangle_normals()[t]));
       const double length = vector(direction).norm();
       if (!std::isfinite(length) || !(length - std::abs(height) > 1e-9 * length)) {

@@ -10,6 +10,7 @@
 #include "detail/chord_occupancy.hpp"
 #include "detail/edge_point.hpp"
 #include "detail/longest_first.hpp"
+#include "detail/number_text.hpp"
 #include "detail/random.hpp"
 #include "detail/seed_ring.hpp"
 #include "detail/thread_pool.hpp"
@@ -36,24 +37,24 @@ void check(const PlacementOptions& options) {
     throw InvalidOption("seed_count is " + std::to_string(options.seed_count) + ", but must be in [1, 1000000]");
   }
   if (!(options.seed_distance_factor >= 1 && options.seed_distance_factor < 1e6)) {
-    throw InvalidOption("seed_distance_factor is " + std::to_string(options.seed_distance_factor) +
+    throw InvalidOption("seed_distance_factor is " + detail::number_text(options.seed_distance_factor) +
                         ", but must be at least 1 and finite: nearer than d_sep nothing is free");
   }
   if (options.method == PlacementMethod::longest && options.occupancy != OccupancyModel::exact) {
     throw InvalidOption("method longest needs exact occupancy; choose another method for the edge mask");
   }
   if (!(options.seed_clearance >= 1 && options.seed_clearance <= 2)) {
-    throw InvalidOption("seed_clearance is " + std::to_string(options.seed_clearance) + ", but must be in [1, 2]");
+    throw InvalidOption("seed_clearance is " + detail::number_text(options.seed_clearance) + ", but must be in [1, 2]");
   }
   if (!(options.test_distance > 0 && options.test_distance <= 1)) {
-    throw InvalidOption("test_distance is " + std::to_string(options.test_distance) + ", but must be in (0, 1]");
+    throw InvalidOption("test_distance is " + detail::number_text(options.test_distance) + ", but must be in (0, 1]");
   }
   const bool strict = options.seed_clearance == 1 && options.test_distance == 1;
   if (!strict && options.occupancy != OccupancyModel::exact) {
     throw InvalidOption("seed_clearance and test_distance need exact occupancy; leave them at 1 for the edge mask");
   }
   if (!(options.minimum_length >= 0 && std::isfinite(options.minimum_length))) {
-    throw InvalidOption("minimum_length is " + std::to_string(options.minimum_length) +
+    throw InvalidOption("minimum_length is " + detail::number_text(options.minimum_length) +
                         ", but must be finite and not negative");
   }
   if (options.thread_count < 1 || options.thread_count > 1024) {

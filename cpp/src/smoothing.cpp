@@ -9,6 +9,7 @@
 #include "detail/field_of_directions.hpp"
 #include "detail/fit_checks.hpp"
 #include "detail/frontal_cholesky.hpp"
+#include "detail/number_text.hpp"
 #include "pectinate/comparison.hpp"
 #include "pectinate/errors.hpp"
 
@@ -27,15 +28,24 @@ constexpr int consensus_steps = 10;
 constexpr double final_share = 0.18;
 /// Of the area, as the weight of a dropped fibre: it counts only where nothing else does.
 constexpr double dropped_weight = 1e-6;
+/// Of the coupling to the neighbours, as the weight of a triangle without a fibre: alone these would be singular.
+constexpr double unmeasured_hold = 1e-10;
+/// Lengths in diagonals of the bounding box: below, nothing is smoothed; far above, all fibres of a component are one
+/// already, and rounding takes over in the end.
+constexpr double least_length = 1e-6, greatest_length = 10;
 
 void check(const SurfaceMesh& mesh, const OrientationField& field, const SmoothingOptions& options,
            std::span<const std::int32_t> barriers) {
-  if (!(options.length > 0) || !std::isfinite(options.length)) {
-    throw InvalidOption("length = " + std::to_string(options.length) + " is not a positive length; give one, as 1.5");
+  const double diagonal = mesh.bounding_box_diagonal();
+  if (!(options.length >= least_length * diagonal && options.length <= greatest_length * diagonal)) {
+    throw InvalidOption("length is " + detail::number_text(options.length) +
+                        ", but must be from a millionth of the diagonal of the mesh's bounding box to ten of them, " +
+                        detail::number_text(least_length * diagonal) + " to " +
+                        detail::number_text(greatest_length * diagonal) + "; give the size of what to smooth away");
   }
   if (!(options.outlier_angle > 0 && options.outlier_angle <= std::numbers::pi / 2)) {
-    throw InvalidOption("outlier_angle = " + std::to_string(options.outlier_angle) +
-                        " is out of range; give radians in (0, pi/2]");
+    throw InvalidOption("outlier_angle is " + detail::number_text(options.outlier_angle) +
+                        ", but must be in (0, pi/2] radians");
   }
   if (!barriers.empty() && barriers.size() != mesh.triangle_count()) {
     throw InvalidOption("there are " + std::to_string(barriers.size()) + " barrier labels, but the mesh has " +
@@ -89,8 +99,8 @@ class PhaseFit {
     matrix_.diagonal.assign(connection_.node_count, 0);
     Phases pull = Phases::Zero(connection_.node_count);
     for (std::int32_t t = 0; t < triangle_count(); ++t) {
-      // A little hold for those with nothing measured, which alone would be singular.
-      const double weight = mesh_.triangle_areas()[t] * (measured_[t] == 0.0 ? dropped_weight * 1e-6 : trust(t));
+      const double area = mesh_.triangle_areas()[t];
+      const double weight = measured_[t] == 0.0 ? unmeasured_hold * factor : area * trust(t);
       for (const auto node : {t, connection_.back[t]}) {
         if (node < 0) continue;
         matrix_.diagonal[node] = weight;

@@ -9,6 +9,7 @@
 #include "detail/crossings.hpp"
 #include "detail/edge_point.hpp"
 #include "detail/fit_checks.hpp"
+#include "detail/number_text.hpp"
 #include "detail/self_approach.hpp"
 #include "detail/vec.hpp"
 #include "detail/visited_chords.hpp"
@@ -26,9 +27,9 @@ constexpr double least_relative_separation = 1e-6;
 
 void check_separation(double separation, double diagonal, const std::string& name) {
   if (std::isfinite(separation) && separation >= least_relative_separation * diagonal) return;
-  throw InvalidOption(name + " is " + std::to_string(separation) +
-                      ", but must be finite and at least 1e-6 of the mesh's diagonal, " + std::to_string(diagonal) +
-                      "; give it in the unit of the mesh");
+  throw InvalidOption(name + " is " + detail::number_text(separation) +
+                      ", but must be finite and at least 1e-6 of the mesh's diagonal, " +
+                      detail::number_text(diagonal) + "; give it in the unit of the mesh");
 }
 
 void check_separations(const SurfaceMesh& mesh, const TracingOptions& options) {
@@ -50,7 +51,7 @@ void check(const SurfaceMesh& mesh, const OrientationField& field, const Tracing
   detail::check_is_on(mesh, field);
   check_separations(mesh, options);
   if (!(options.abrupt_turn_angle > 0 && options.abrupt_turn_angle <= std::numbers::pi)) {
-    throw InvalidOption("abrupt_turn_angle is " + std::to_string(options.abrupt_turn_angle) +
+    throw InvalidOption("abrupt_turn_angle is " + detail::number_text(options.abrupt_turn_angle) +
                         ", but must be in (0, pi] radians; pi disables the criterion");
   }
   if (options.max_steps < 1) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "detail/number_text.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/errors.hpp"
 
@@ -32,10 +33,10 @@ struct PolylinePoint {
 
 void check(const TubeOptions& options) {
   if (!(options.radius > 0) || !std::isfinite(options.radius)) {
-    throw InvalidOption("tube radius is " + std::to_string(options.radius) + ", but must be positive and finite");
+    throw InvalidOption("tube radius is " + detail::number_text(options.radius) + ", but must be positive and finite");
   }
   if (!(options.taper_length >= 0) || !std::isfinite(options.taper_length)) {
-    throw InvalidOption("taper_length is " + std::to_string(options.taper_length) +
+    throw InvalidOption("taper_length is " + detail::number_text(options.taper_length) +
                         ", but must be finite and not negative; 0 gives blunt ends");
   }
   if (options.side_count < 3 || options.side_count > 12) {

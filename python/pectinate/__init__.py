@@ -10,7 +10,7 @@ Everything is in millimetres after loading. An orientation is a line without a s
 
 from importlib.metadata import version
 
-from pectinate import datasets, errors
+from pectinate import datasets, errors, viewer
 from pectinate._core import OrientationField, SurfaceMesh, Tubes
 from pectinate.comparison import Comparison, add_noise, compare
 from pectinate.interpolated_field import InterpolatedField
@@ -54,6 +54,7 @@ __all__ = [
     "read_tracts",
     "save_surface",
     "smooth",
+    "viewer",
 ]
 
 __version__ = version("pectinate")

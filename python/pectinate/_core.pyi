@@ -104,11 +104,15 @@ class BoundaryRule(Enum):
     parallel = 1
     perpendicular = 2
 
+LEAST_WEIGHT: float
+GREATEST_WEIGHT: float
+
 class Tract:
-    def __init__(self, points: _Numbers, *, name: str = "", weight: float = ...) -> None: ...
+    def __init__(self, points: _Numbers, *, name: str = "", weight: float = ..., number: int | None = None) -> None: ...
     name: str
     points: _Floats
     weight: float
+    number: int | None
 
 class BoundaryCondition:
     def __init__(self, loop: int, rule: BoundaryRule, *, weight: float = ...) -> None: ...
@@ -333,6 +337,9 @@ def place_streamlines(
     thread_count: int = ...,
     progress: Callable[[float], bool | None] | None = None,
 ) -> Placement: ...
+
+default_taper_length: float
+
 def make_tubes(
     mesh: SurfaceMesh, placement: Placement, *, radius: float = ..., taper_length: float = ..., side_count: int = ...
 ) -> Tubes: ...

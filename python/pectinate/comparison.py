@@ -15,6 +15,7 @@ from PIL import Image
 
 from pectinate import _core
 from pectinate.angle_statistics import angle_statistics, angle_statistics_per_region
+from pectinate.checks import one_of, quoted, real, whole
 from pectinate.errors import InvalidField, InvalidOption
 from pectinate.figure.values import SurfaceValues
 from pectinate.io import load, save_surface
@@ -115,22 +116,30 @@ def compare(  # noqa: PLR0913
     regions
         (T,) integers per triangle of the second source, for statistics; by default its tags.
     maximum_distance
-        mm, for "nearest": triangles farther from the first surface are left out.
+        mm, of "nearest" only: triangles farther from the first surface are left out.
     outer_loops
-        Of the first and the second surface, for "disks"; by default the longest of each.
+        Of the first and the second surface, of "disks" only; by default the longest of each.
     loop_pairs
-        Of "disks": loops of the first and of the second surface that correspond, at least one pair of inner loops; by
-        default those of the same name.
+        Of "disks" only: loops of the first and of the second surface that correspond, at least one pair of inner loops;
+        by default those of the same name.
 
     Raises
     ------
     InvalidField
         A surface has no field, or "same" is asked for and the surfaces differ.
     InvalidOption
-        An option out of its range, a loop that does not exist, or no pairs.
+        An option out of its range or of another `how`, a loop that does not exist, or no pairs.
     InvalidMesh
         "disks" for a surface that has no disk; see `pectinate.parameterize`.
+    TypeError
+        A distance that is no number.
     """
+    one_of(how, "how", HOW)
+    maximum_distance = real(maximum_distance, "maximum_distance")
+    _check_how(how, "maximum_distance", "nearest", given=maximum_distance != math.inf)
+    outers = _outer_loops(outer_loops)
+    _check_how(how, "outer_loops", "disks", given=any(loop is not None for loop in outers))
+    _check_how(how, "loop_pairs", "disks", given=loop_pairs is not None)
     source, target = load(first), load(second)
     field, own_field = source.require_field(), target.require_field()
     distances = None
@@ -142,13 +151,9 @@ def compare(  # noqa: PLR0913
             field, distances = moved.field, moved.distances
         case "disks":
             pairs = _loop_pairs(source, target, loop_pairs)
-            disks = [
-                parameterize(model, outer_loop=loop) for model, loop in zip((source, target), outer_loops, strict=True)
-            ]
+            disks = [parameterize(model, outer_loop=loop) for model, loop in zip((source, target), outers, strict=True)]
             moved = _transfer_through_disks(disks[0], disks[1], pairs)
             field, distances = moved.field, moved.distances
-        case _:
-            raise InvalidOption(f"how is {how!r}, but must be one of {', '.join(HOW)}")
     return Comparison(
         model=target.with_field(field, f"the field is that of {source.data.source} ({how})"),
         angles=_core.angles_between(field, own_field),
@@ -166,9 +171,9 @@ def add_noise(surface: Any, standard_deviation: float, *, random_seed: int = 1) 
     surface
         A `Model`, or anything that `pectinate.load` takes.
     standard_deviation
-        Radians, not negative.
+        Radians, from 0 to pi.
     random_seed
-        The same number gives the same noise.
+        In [0, 2^64): the same number gives the same noise.
 
     Raises
     ------
@@ -176,12 +181,14 @@ def add_noise(surface: Any, standard_deviation: float, *, random_seed: int = 1) 
         An option out of its range.
     InvalidField
         The surface has no orientation field.
+    TypeError
+        A standard deviation or a seed that is no number.
     """
     model = load(surface)
-    noisy = _core.add_angular_noise(
-        model.mesh, model.require_field(), standard_deviation=standard_deviation, random_seed=random_seed
-    )
-    note = f"angular noise of standard deviation {math.degrees(standard_deviation):g} degrees was added"
+    deviation = real(standard_deviation, "standard_deviation")
+    seed = whole(random_seed, "random_seed", 0, 2**64 - 1)
+    noisy = _core.add_angular_noise(model.mesh, model.require_field(), standard_deviation=deviation, random_seed=seed)
+    note = f"angular noise of standard deviation {math.degrees(deviation):g} degrees was added"
     return model.with_field(noisy, note)
 
 
@@ -196,18 +203,32 @@ def _transfer_through_disks(source: DiskMap, target: DiskMap, pairs: list[tuple[
     )
 
 
+def _check_how(how: How, option: str, of: How, *, given: bool) -> None:
+    if given and how != of:
+        raise InvalidOption(f"{option} is given, but belongs to how={of!r} alone, not to {how!r}; leave it out")
+
+
+def _outer_loops(given: Any) -> tuple[LoopChoice | None, LoopChoice | None]:
+    try:
+        first, second = given
+    except (TypeError, ValueError):
+        raise InvalidOption(f"outer_loops is {quoted(given)}; give two, of the first and second surface") from None
+    return first, second
+
+
 def _loop_pairs(source: Model, target: Model, given: Any) -> list[tuple[int, int]]:
     if given is None:
         names = source.loop_names
         given = [(name, name) for name in target.loop_names if name in names]
-    if not given:
-        raise InvalidOption(
-            "no boundary loops of the two surfaces have the same name; say which correspond: loop_pairs"
-        )
     try:
         pairs = [(first, second) for first, second in given]
     except (TypeError, ValueError):
-        raise InvalidOption(f"loop_pairs is {given!r}; give pairs of loops, of the first and second surface") from None
+        remedy = "give pairs of loops, of the first and second surface"
+        raise InvalidOption(f"loop_pairs is {quoted(given)}; {remedy}") from None
+    if not pairs:
+        raise InvalidOption(
+            "no boundary loops of the two surfaces have the same name; say which correspond: loop_pairs"
+        )
     return [(find_loop(source, first), find_loop(target, second)) for first, second in pairs]
 
 
@@ -220,11 +241,14 @@ def _check_same(source: Model, target: Model) -> None:
         and np.allclose(first.vertices, second.vertices, rtol=0, atol=tolerance)
     ):
         pair = f"{source.data.source} and {target.data.source}"
-        raise InvalidField(f"{pair} are not the same triangles; compare with how='nearest' or 'disks'")
+        raise InvalidField(f"{pair} are not the same triangles; compare with how='nearest' or how='disks'")
 
 
 def _regions(model: Model, regions: ArrayLike) -> NDArray[np.int64]:
-    labels = np.asarray(regions)
+    try:
+        labels = np.asarray(regions)
+    except ValueError:
+        labels = np.empty(0)
     if labels.shape != (model.mesh.input_triangle_count,) or labels.dtype.kind not in "iu":
         rule = f"regions has the shape {labels.shape} of {labels.dtype}"
         raise InvalidOption(

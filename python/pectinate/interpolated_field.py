@@ -32,9 +32,12 @@ class InterpolatedField:
     model
         The surface with the field.
     confidence
-        (T,) float64 per mesh triangle, in [0, 1]: near 0 around singularities and where tracts disagree.
+        (T,) float64 per mesh triangle, in [0, 1]: near 0 around singularities and where tracts disagree; small too, on
+        curved surfaces, where only weak weights act: the direction may be good nevertheless.
     tracts
         What the field was interpolated from.
+    tract_numbers
+        By which messages and reports call tracts without a name: those of the `FieldEditor`.
     constraints
         What that asked of triangles, and the tracts as curves on the surface, a `Constraints`.
     conditions
@@ -50,6 +53,7 @@ class InterpolatedField:
     model: Model
     confidence: NDArray[np.float64]
     tracts: TractSet
+    tract_numbers: tuple[int, ...]
     constraints: _core.Constraints
     conditions: tuple[_core.BoundaryCondition, ...]
     method: str
@@ -175,7 +179,7 @@ class InterpolatedField:
         """Name of a tract; -1 is the boundary."""
         if index < 0:
             return "boundary"
-        return self.tracts.tracts[index].name or f"tract {index}"
+        return self.tracts.tracts[index].name or f"tract {self.tract_numbers[index]}"
 
 
 def _weight(weight: float) -> float | str:

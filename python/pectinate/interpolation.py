@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import replace
-from typing import Any, Literal
+from typing import Any, Literal, cast
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from pectinate import _core
+from pectinate.checks import one_of, quoted, real, whole
 from pectinate.errors import InvalidOption
 from pectinate.interpolated_field import InterpolatedField
 from pectinate.io import load
@@ -52,7 +53,7 @@ def interpolate(surface: Any, tracts: TractSet | str | os.PathLike[str], **optio
     InvalidMesh
         A reference frame is asked for, and the surface is closed, has handles or several components.
     TypeError
-        An unknown option.
+        An unknown option, or one of another type.
     """
     return FieldEditor(surface, tracts, **options).field()
 
@@ -82,7 +83,7 @@ class FieldEditor:
 
     Raises
     ------
-    InvalidFile, InvalidOption, InvalidMesh
+    InvalidFile, InvalidOption, InvalidMesh, TypeError
         As in `interpolate`.
     """
 
@@ -98,9 +99,8 @@ class FieldEditor:
         maximum_distance: float | None = None,
         conflict_angle: float | None = None,
     ) -> None:
-        if method not in METHODS:
-            raise InvalidOption(f"method is {method!r}, but must be one of {', '.join(METHODS)}")
-        given = TractSet() if tracts is None else tracts if isinstance(tracts, TractSet) else read_tracts(tracts)
+        one_of(method, "method", METHODS)
+        given = _tract_set(tracts)
         self.model = load(surface).with_loop_points(given.loops)
         self.method = method
         framed = method == "reference_frame" or any(x is not None for x in (outer_loop, inner_loop, inner_point))
@@ -110,7 +110,7 @@ class FieldEditor:
             else None
         )
         limits = {"maximum_distance": maximum_distance, "conflict_angle": conflict_angle}
-        self._limits: dict[str, Any] = {name: limit for name, limit in limits.items() if limit is not None}
+        self._limits: dict[str, Any] = {name: real(limit, name) for name, limit in limits.items() if limit is not None}
         identity = SurfaceIdentity.of(self.model)
         self._drawn_on = given.surface or identity
         self._notes = _surface_notes(self._drawn_on, identity)
@@ -137,7 +137,11 @@ class FieldEditor:
         ------
         InvalidOption
             The tract does not lie on the surface; see `interpolate`.
+        TypeError
+            It is no `Tract`.
         """
+        if not isinstance(tract, Tract):
+            raise TypeError(f"tract is {quoted(tract)}, but must be a Tract")
         number = self._next_number
         self._adopt({**self._tracts, number: tract}, self._conditions)
         self._next_number += 1
@@ -162,7 +166,7 @@ class FieldEditor:
         InvalidOption
             There is no tract of this number, or as in `add`.
         """
-        moved = replace(self._tract(number), points=np.asarray(points))
+        moved = replace(self._tract(number), points=cast("NDArray[np.float64]", points))
         self._adopt({**self._tracts, number: moved}, self._conditions)
 
     def set_condition(self, loop: LoopChoice, rule: Rule, *, weight: float = math.inf) -> None:
@@ -171,7 +175,7 @@ class FieldEditor:
         Raises
         ------
         InvalidOption
-            There is no such loop or rule, or the weight is not positive.
+            There is no such loop or rule, or the weight is out of its range.
         """
         condition = BoundaryCondition(loop, rule, weight)
         index = find_loop(self.model, loop)
@@ -186,6 +190,7 @@ class FieldEditor:
             model=self.model.with_field(solved.field, f"the field is interpolated from {counts} ({self.method})"),
             confidence=solved.confidence,
             tracts=self.tracts,
+            tract_numbers=tuple(self._tracts),
             constraints=self._constraints,
             conditions=tuple(core_conditions(self.model, tuple(self._conditions.values()))),
             method=self.method,
@@ -202,16 +207,27 @@ class FieldEditor:
     def _adopt(self, tracts: dict[int, Tract], conditions: dict[int, BoundaryCondition]) -> None:
         """Bring tracts and conditions to the surface, and keep them if that succeeds."""
         self._constraints = self._projector.make_constraints(
-            [_core.Tract(tract.points, name=tract.name, weight=tract.weight) for tract in tracts.values()],
+            [tract.to_core(number) for number, tract in tracts.items()],
             core_conditions(self.model, tuple(conditions.values())),
             **self._limits,
         )
         self._tracts, self._conditions = tracts, conditions
 
     def _tract(self, number: int) -> Tract:
-        if number not in self._tracts:
-            raise InvalidOption(f"there is no tract {number}; there are {', '.join(map(str, self._tracts)) or 'none'}")
+        if whole(number, "the number of a tract") not in self._tracts:
+            known = ", ".join(map(str, self._tracts)) or "none"
+            raise InvalidOption(f"there is no tract {quoted(number)}; there are {known}")
         return self._tracts[number]
+
+
+def _tract_set(tracts: Any) -> TractSet:
+    if tracts is None:
+        return TractSet()
+    if isinstance(tracts, TractSet):
+        return tracts
+    if not isinstance(tracts, (str, os.PathLike)):
+        raise TypeError(f"tracts is {quoted(tracts)}, but must be a TractSet or the path of a file of one")
+    return read_tracts(tracts)
 
 
 def _surface_notes(drawn_on: SurfaceIdentity, surface: SurfaceIdentity) -> tuple[str, ...]:

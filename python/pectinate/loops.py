@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pectinate import _core
+from pectinate.checks import quoted
 from pectinate.errors import InvalidOption
 from pectinate.model import Model
 
@@ -40,15 +41,15 @@ def find_loop(model: Model, which: LoopChoice) -> int:
     """
     count = len(model.mesh.boundary_loops)
     if count == 0:
-        raise InvalidOption(f"loop {which!r} does not exist: the surface is closed; choose none")
+        raise InvalidOption(f"loop {quoted(which)} does not exist: the surface is closed; choose none")
     if isinstance(which, str):
         names = model.loop_names
         if which not in names:
-            raise InvalidOption(f"there is no loop named {which!r}; {_known(names, count)}")
+            raise InvalidOption(f"there is no loop named {quoted(which)}; {_known(names, count)}")
         return names[which]
     if isinstance(which, (int, np.integer)) and not isinstance(which, bool):
         if not 0 <= which < count:
-            raise InvalidOption(f"loop {which} does not exist; {_known(model.loop_names, count)}")
+            raise InvalidOption(f"loop {quoted(which)} does not exist; {_known(model.loop_names, count)}")
         return int(which)
     return _core.nearest_boundary_loop(model.mesh, _point(which))
 
@@ -69,10 +70,10 @@ def three_numbers(values: object, what: str) -> NDArray[np.float64]:
     """
     try:
         point = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         point = np.empty(0)
     if point.shape != (_COORDINATES,) or not np.isfinite(point).all():
-        raise InvalidOption(f"{what} is {values!r}; give three finite numbers, mm")
+        raise InvalidOption(f"{what} is {quoted(values)}; give three finite numbers, mm")
     return point
 
 
@@ -86,4 +87,4 @@ def _point(which: object) -> NDArray[np.float64]:
         return three_numbers(which, "the loop")
     except InvalidOption:
         remedy = "give an index, a name or a point of three numbers, mm"
-        raise InvalidOption(f"{which!r} is no boundary loop; {remedy}") from None
+        raise InvalidOption(f"{quoted(which)} is no boundary loop; {remedy}") from None

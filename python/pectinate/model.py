@@ -3,25 +3,32 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+import trimesh
+from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
 from pectinate import _core
 from pectinate._core import OrientationField, SurfaceMesh
-from pectinate.errors import InvalidField, InvalidMesh
+from pectinate.errors import InvalidField, InvalidMesh, InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
 from pectinate.figure.sheet import draw_sheet
+from pectinate.io.gltf import make_trimesh
+from pectinate.io.vtk_library import surface_dataset
 from pectinate.summary import summarize
+from pectinate.viewer import Lines, Page, Part
+from pectinate.viewer.parts import Values, named_values
 
 if TYPE_CHECKING:
     from pectinate.io.units import UnitDecision
 
 Location = Literal["triangle", "vertex"]
+
+_TRACT_RADIUS = 0.005
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,6 +189,23 @@ class Model:
         result[self.mesh.input_triangle] = values
         return result
 
+    def to_mesh(self, values: ArrayLike) -> NDArray[np.float64]:
+        """Take numbers of the source's triangles (T,) or vertices (V,) to those of `mesh`.
+
+        Raises
+        ------
+        InvalidOption
+            There is not one number per triangle or per vertex.
+        """
+        array, mesh = np.asarray(values), self.mesh
+        rows = {mesh.input_vertex_count: mesh.input_vertex, mesh.input_triangle_count: mesh.input_triangle}
+        if array.ndim != 1 or array.dtype.kind not in "fiu" or len(array) not in rows:
+            raise InvalidOption(
+                f"values of shape {array.shape} and type {array.dtype}: give one number per triangle "
+                f"({mesh.input_triangle_count},) or vertex ({mesh.input_vertex_count},) of {self.data.source}"
+            )
+        return array.astype(np.float64)[rows[len(array)]]
+
     def figure(self, path: str | os.PathLike[str] | None = None, **sheet_options: Any) -> Image.Image:
         """Draw the surface without streamlines, in one or several views, such as for a map of values on it.
 
@@ -199,6 +223,105 @@ class Model:
         """
         check_picture_path(path)
         return save_picture(draw_sheet((self.mesh.vertices, self.mesh.triangles), **sheet_options), path)
+
+    def to_trimesh(self) -> trimesh.Trimesh:
+        """Make a `trimesh.Trimesh` of `mesh`, in mm, with the same rows."""
+        return make_trimesh(self.mesh.vertices, self.mesh.triangles)
+
+    def to_pyvista(self, values: Mapping[str, ArrayLike] | None = None) -> Any:
+        """Make a PyVista data set of `mesh`.
+
+        Cells have `fiber` (directions, zero where there is none), `elemTag`, both where the model has them, and
+        `input_triangle`; points have `input_vertex`.
+
+        Parameters
+        ----------
+        values
+            More arrays by name, per triangle or vertex of `mesh`.
+
+        Raises
+        ------
+        MissingDependency
+            PyVista is not installed.
+        InvalidOption
+            There is not one row per triangle or vertex.
+        """
+        mesh, per_triangle, per_vertex = self.mesh, {}, {}
+        for name, given in (values or {}).items():
+            array = np.asarray(given)
+            if array.shape[:1] == (mesh.triangle_count,):
+                per_triangle[name] = array
+            elif array.shape[:1] == (len(mesh.vertices),):
+                per_vertex[name] = array
+            else:
+                raise InvalidOption(
+                    f"values {name!r} of shape {array.shape}: give one row per triangle ({mesh.triangle_count}) or "
+                    f"vertex ({len(mesh.vertices)}) of the mesh"
+                )
+        fibres = None if self.field is None else self.field.directions
+        cells = {"fiber": fibres, "elemTag": self.tags, "input_triangle": mesh.input_triangle, **per_triangle}
+        return surface_dataset(mesh.vertices, mesh.triangles, cells, {"input_vertex": mesh.input_vertex, **per_vertex})
+
+    def part(
+        self,
+        name: str = "",
+        *,
+        tracts: Sequence[ArrayLike] = (),
+        tract_radius: float | None = None,
+        surface_values: Values | None = None,
+        visible: bool = True,
+    ) -> Part:
+        """Make a part of an interactive page, which may have several, see `pectinate.viewer.Page`.
+
+        Parameters
+        ----------
+        name
+            Beside its switch.
+        tracts
+            Lines (k, 3), mm, drawn black, such as `TractSet.curves_on` makes.
+        tract_radius
+            mm; by default a 200th of the surface's diagonal.
+        surface_values
+            Numbers per triangle or vertex of `mesh`, as in `figure`; several by name.
+        visible
+            Whether it is switched on at first.
+
+        Raises
+        ------
+        InvalidOption
+            A tract is no line, or the radius is not above 0.
+        """
+        radius = _TRACT_RADIUS * self.mesh.bounding_box_diagonal if tract_radius is None else tract_radius
+        return Part(
+            name,
+            (self.mesh.vertices, self.mesh.triangles),
+            tracts=Lines.of(tracts, radius) if len(tracts) else None,
+            surface_values=named_values(surface_values),
+            visible=visible,
+        )
+
+    def show(
+        self,
+        *,
+        tracts: Sequence[ArrayLike] = (),
+        surface_values: Values | None = None,
+        **page_options: Any,
+    ) -> Page:
+        """Show the surface without streamlines in the browser, or in Jupyter.
+
+        Parameters
+        ----------
+        tracts, surface_values
+            As in `part`.
+        page_options
+            Of `pectinate.viewer.Page`: `markers`, `views`, `title`, ...
+
+        Raises
+        ------
+        InvalidOption, MissingDependency
+            As `part` and `Page`.
+        """
+        return Page(self.part(tracts=tracts, surface_values=surface_values), **page_options).show()
 
     def summary(self) -> dict[str, Any]:
         """Everything worth knowing before streamlines are placed, ready for JSON.

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from enum import Enum
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import trimesh
 from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
@@ -16,10 +18,13 @@ from pectinate import _core
 from pectinate.choices import member
 from pectinate.errors import InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
+from pectinate.figure.plots import draw_lengths
 from pectinate.figure.sheet import draw_sheet
-from pectinate.io import load, streamlines
+from pectinate.io import lines, load, streamlines
+from pectinate.io.gltf import make_scene
 from pectinate.model import Model
 from pectinate.statistics import PlacementStatistics
+from pectinate.viewer import Lines, Page, Part
 
 _OPTION_NAMES = (
     "separation_distance",
@@ -35,6 +40,7 @@ _OPTION_NAMES = (
     "random_seed",
     "thread_count",
 )
+_PAGE_OPTIONS = {"markers", "notes", "views", "axes", "shown_values", "style"}
 _ENUMERATIONS: dict[str, type[Enum]] = {"method": _core.PlacementMethod, "occupancy": _core.OccupancyModel}
 
 
@@ -229,16 +235,17 @@ class Placement:
         radius: float = 0.18 / 0.8 * self.options["separation_distance"]
         return radius
 
-    def save(self, path: str | os.PathLike[str], **tube_options: Any) -> None:
+    def save(self, path: str | os.PathLike[str], **options: Any) -> None:
         """Write the streamlines, in the format that the suffix names.
 
         Parameters
         ----------
         path
             `.npz`: all arrays with the surface and the field, see `pectinate.io.streamlines`. `.vtp`: poly-lines with
-            their data, for ParaView (extra `vtk`). `.ply`, `.obj`, `.glb`: tubes.
-        tube_options
-            Of `tubes`, for the last three only.
+            their data as of `to_pyvista`, for ParaView (extra `vtk`). `.ply`, `.obj`: tubes. `.glb`: surface and tubes
+            with materials, in metres with +y up as glTF demands, see `pectinate.io.gltf`. `.html`: an interactive page.
+        options
+            Of `tubes` for files of tubes, of `page` for pages, `values` of `to_pyvista` for `.vtp`.
 
         Raises
         ------
@@ -249,7 +256,130 @@ class Placement:
         MissingDependency
             `.vtp` without PyVista.
         """
-        streamlines.save(self, Path(path), **tube_options)
+        streamlines.save(self, Path(path), **options)
+
+    def to_trimesh(self, **tube_options: Any) -> trimesh.Scene:
+        """Make a `trimesh.Scene`, in mm, with the nodes `surface` and `streamlines` (tubes; none without streamlines).
+
+        Parameters
+        ----------
+        tube_options
+            Of `tubes`.
+
+        Raises
+        ------
+        InvalidOption
+            An option out of its range.
+        """
+        return make_scene(self.mesh, self.tubes(**tube_options))
+
+    def to_pyvista(self, values: Mapping[str, ArrayLike] | None = None) -> Any:
+        """Make a PyVista data set of poly-lines; the surface is that of `model.to_pyvista()`.
+
+        Cells have `line`, `length` (mm), `point_count`, `stop_reason_first` and `stop_reason_last` (by value, with the
+        names in the field data), `triangle_first`, `triangle_last` and `triangle_seed`; points have `line`,
+        `arc_length` (mm), `triangle`, `input_triangle` and `barycentric`.
+
+        Parameters
+        ----------
+        values
+            More arrays of points by name: numbers per triangle or vertex of `mesh`, vertex values interpolated.
+
+        Raises
+        ------
+        MissingDependency
+            PyVista is not installed.
+        InvalidOption
+            There is not one number per triangle or vertex.
+        """
+        return lines.to_polylines(self, values)
+
+    def to_pandas(self, values: Mapping[str, ArrayLike] | None = None) -> Any:
+        """Make a pandas table, a row per streamline, with the cell arrays of `to_pyvista`; stop reasons by name.
+
+        Parameters
+        ----------
+        values
+            More columns by name: means along the lines, by length, of numbers per triangle or vertex of `mesh`.
+
+        Raises
+        ------
+        MissingDependency
+            pandas is not installed.
+        InvalidOption
+            There is not one number per triangle or vertex.
+        """
+        return lines.to_table(self, values)
+
+    def plot_lengths(self, path: str | os.PathLike[str] | None = None, **options: Any) -> Image.Image:
+        """Draw the histogram of lengths (the paper's Fig. 7), with `pectinate.figure.draw_lengths` and its options."""
+        return draw_lengths([self.lengths], path, **options)
+
+    def part(
+        self, name: str = "", *, tube_radius: float | None = None, taper_length: float | None = None, **options: Any
+    ) -> Part:
+        """Make a part of an interactive page, which may have several, see `pectinate.viewer.Page`.
+
+        Parameters
+        ----------
+        name
+            Beside its switch.
+        tube_radius, taper_length
+            As `radius` and `taper_length` of `tubes`; the page has a slider for the radius.
+        options
+            Of `Model.part`: `tracts`, `surface_values`, `visible`, ...
+
+        Raises
+        ------
+        InvalidOption
+            An option is out of its range.
+        """
+        drawn = Lines(
+            self.points,
+            self.offsets,
+            self.default_tube_radius() if tube_radius is None else tube_radius,
+            _core.default_taper_length if taper_length is None else taper_length,
+        )
+        return replace(self.model.part(name, **options), streamlines=drawn)
+
+    def page(self, *, title: str = "", **options: Any) -> Page:
+        """Make an interactive page: one HTML file that needs neither a server nor the network.
+
+        Parameters
+        ----------
+        title
+            Above the switches.
+        options
+            Of `part` (`tube_radius`, `tracts`, `surface_values`, ...) and of `pectinate.viewer.Page` (`markers`,
+            `views`, ...).
+
+        Raises
+        ------
+        InvalidOption, MissingDependency
+            As `part` and `Page`.
+        """
+        of_page = {key: options.pop(key) for key in _PAGE_OPTIONS & options.keys()}
+        statistics = self.statistics
+        notes = [
+            f"{statistics.streamline_count:,} streamlines, {self.options['separation_distance']:g} mm apart, mean "
+            f"length {statistics.mean_length:.1f} mm"
+        ]
+        return Page(self.part(**options), **{"title": title, "notes": notes, **of_page})
+
+    def show(self, **options: Any) -> Page:
+        """Show the surface with the streamlines in the browser, to be turned and zoomed; in Jupyter, in the notebook.
+
+        Parameters
+        ----------
+        options
+            As of `page`.
+
+        Raises
+        ------
+        InvalidOption, MissingDependency
+            As `page`.
+        """
+        return self.page(**options).show()
 
     def figure(
         self,

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from pectinate import _core
 from pectinate.angle_statistics import angle_statistics, angle_statistics_per_region
+from pectinate.checks import flag, one_of, real
 from pectinate.errors import InvalidOption
 from pectinate.io import load, save_surface
 from pectinate.model import Model
@@ -89,8 +90,8 @@ def smooth(
     surface
         A `Model`, or anything that `pectinate.load` takes.
     length
-        mm: the size of what is smoothed away, the standard deviation of the weight that falls off around a fibre;
-        by default 1.5.
+        mm: the size of what is smoothed away, the standard deviation of the weight that falls off around a fibre; from
+        a millionth of the bounding box's diagonal to ten of them; by default 1.5.
     barriers
         "tags": nothing is exchanged between regions of different tag.
     outlier_angle
@@ -104,12 +105,14 @@ def smooth(
         An option out of its range, or barriers by tags without tags.
     InvalidField
         The surface has no orientation field.
+    TypeError
+        A length or an angle that is no number, or `fill_missing` neither True nor False.
     """
     model = load(surface)
     field = model.require_field()
     options = {"length": length, "outlier_angle": outlier_angle}
-    given: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
-    given["fill_missing"] = fill_missing
+    given: dict[str, Any] = {name: real(value, name) for name, value in options.items() if value is not None}
+    given["fill_missing"] = flag(fill_missing, "fill_missing")
     result = _core.smooth(model.mesh, field, barriers=_labels(model, barriers), **given)
     return SmoothedField(
         model=model.with_field(result.field, "the field is smoothed"),
@@ -120,8 +123,7 @@ def smooth(
 
 
 def _labels(model: Model, barriers: str) -> NDArray[np.int32] | None:
-    if barriers not in BARRIERS:
-        raise InvalidOption(f"barriers is {barriers!r}, but must be one of {', '.join(BARRIERS)}")
+    one_of(barriers, "barriers", BARRIERS)
     if barriers == "none":
         return None
     if model.tags is None:

@@ -7,19 +7,22 @@ import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from numbers import Real
-from typing import Literal, cast
+from typing import Any, Literal, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pectinate import _core
+from pectinate.checks import all_of, one_of, quoted, real, text
 from pectinate.errors import InvalidOption
 from pectinate.loops import LoopChoice, find_loop, three_numbers
 from pectinate.model import Model
 
 Rule = Literal["free", "parallel", "perpendicular"]
 RULES: tuple[Rule, ...] = ("free", "parallel", "perpendicular")
+
+#: The least and the greatest weight that is not infinite.
+WEIGHT_RANGE = (_core.LEAST_WEIGHT, _core.GREATEST_WEIGHT)
 
 _LEAST_POINTS = 2
 _CHECKSUM_GRID = 1e-3  # mm
@@ -37,25 +40,36 @@ class Tract:
     name
         For messages and reports.
     weight
-        Positive; infinity: fibres follow it exactly; 1 pulls about as much as one neighbouring triangle.
+        Infinity: fibres follow it exactly. Else from 1e-6 to 1e12: 1 pulls about as much as one neighbouring triangle.
     description
         For people.
+    label
+        A few letters to mark it by in pictures, such as the number of a row in a table; several tracts may share one.
 
     Raises
     ------
     InvalidOption
-        Points of another shape or not finite, or a weight that is not positive.
+        Points of another shape or not finite, or a weight out of its range.
+    TypeError
+        A weight that is no number, a name or a description that is no string.
     """
 
     points: NDArray[np.float64]
     name: str = ""
     weight: float = math.inf
     description: str = ""
+    label: str = ""
 
     def __post_init__(self) -> None:
         """Check and copy what was given."""
+        text(self.name, "name")
+        text(self.description, "description")
         object.__setattr__(self, "points", _points(self.points, self.name))
-        _check_weight(self.weight, f"tract {self.name!r}")
+        object.__setattr__(self, "weight", _weight(self.weight, f"tract {self.name!r}"))
+
+    def to_core(self, number: int) -> _core.Tract:
+        """The tract as the engine has it, with the number by which messages call it."""
+        return _core.Tract(self.points, name=self.name, weight=self.weight, number=number)
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +88,9 @@ class BoundaryCondition:
     Raises
     ------
     InvalidOption
-        Another rule, or a weight that is not positive.
+        Another rule, or a weight out of its range.
+    TypeError
+        A weight that is no number.
     """
 
     loop: LoopChoice
@@ -83,9 +99,8 @@ class BoundaryCondition:
 
     def __post_init__(self) -> None:
         """Check what was given."""
-        if self.rule not in RULES:
-            raise InvalidOption(f"boundary rule {self.rule!r} is not known; use one of: {', '.join(RULES)}")
-        _check_weight(self.weight, f"the condition of loop {self.loop!r}")
+        one_of(self.rule, "rule", RULES)
+        object.__setattr__(self, "weight", _weight(self.weight, f"the condition of loop {quoted(self.loop)}"))
 
 
 @dataclass(frozen=True)
@@ -155,6 +170,13 @@ class TractSet:
         For each loop with a name a point (3,), mm: the name goes to the boundary loop nearest to it.
     surface
         The surface that the tracts were drawn on; None where nobody says. They may be used on others.
+
+    Raises
+    ------
+    InvalidOption
+        A point of a loop that is none.
+    TypeError
+        Something else than tracts, conditions, points by name or a `SurfaceIdentity`.
     """
 
     tracts: tuple[Tract, ...] = ()
@@ -164,10 +186,26 @@ class TractSet:
 
     def __post_init__(self) -> None:
         """Take any sequences."""
-        object.__setattr__(self, "tracts", tuple(self.tracts))
-        object.__setattr__(self, "boundary", tuple(self.boundary))
-        loops = {name: _point(point, name) for name, point in self.loops.items()}
+        object.__setattr__(self, "tracts", all_of(self.tracts, "tracts", Tract))
+        object.__setattr__(self, "boundary", all_of(self.boundary, "boundary", BoundaryCondition))
+        if not isinstance(self.loops, Mapping):
+            raise TypeError(f"loops is {quoted(self.loops)}, but must map names to points")
+        if not (self.surface is None or isinstance(self.surface, SurfaceIdentity)):
+            raise TypeError(f"surface is {quoted(self.surface)}, but must be a SurfaceIdentity or None")
+        loops = {text(name, "the name of a loop"): _point(point, name) for name, point in self.loops.items()}
         object.__setattr__(self, "loops", loops)
+
+    def curves_on(self, model: Model) -> list[NDArray[np.float64]]:
+        """Bring the tracts to the surface of a model, as curves (k, 3) on it, mm, such as for pictures.
+
+        Raises
+        ------
+        InvalidOption
+            A tract is too far from the surface.
+        """
+        projector = _core.TractProjector(model.mesh)
+        constraints = projector.make_constraints([tract.to_core(number) for number, tract in enumerate(self.tracts)])
+        return [curve.points for curve in constraints.tracts]
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write a `.json` file that people can read and edit; see `pectinate.io.tract_file`.
@@ -204,8 +242,8 @@ def core_conditions(model: Model, conditions: tuple[BoundaryCondition, ...]) -> 
 def _points(values: ArrayLike, name: str) -> NDArray[np.float64]:
     try:
         points = np.array(values, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InvalidOption(f"the points of tract {name!r} are no numbers, (n, 3) ({error})") from error
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InvalidOption(f"the points of tract {name!r} are {quoted(values)}; give numbers, (n, 3), mm") from error
     if points.shape[1:] != (3,) or len(points) < _LEAST_POINTS:
         raise InvalidOption(f"tract {name!r} has points of the shape {points.shape}; give (n, 3), at least two, mm")
     if not np.isfinite(points).all():
@@ -221,9 +259,12 @@ def _point(values: ArrayLike, name: str) -> NDArray[np.float64]:
     return point
 
 
-def _check_weight(weight: float, what: str) -> None:
-    if isinstance(weight, bool) or not isinstance(weight, Real) or not weight > 0:
-        raise InvalidOption(f"the weight of {what} is {weight}; it must be positive, or infinite for exactly")
+def _weight(weight: Any, what: str) -> float:
+    number, (least, greatest) = real(weight, f"the weight of {what}"), WEIGHT_RANGE
+    if not (least <= number <= greatest or number == math.inf):
+        rule = f"but must be from {least:g} to {greatest:g}, or infinite for exactly"
+        raise InvalidOption(f"the weight of {what} is {number!r}, {rule}")
+    return number
 
 
 def _checksum(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> str:

@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "fields.hpp"
 #include "pectinate/demo_atrium.hpp"
 
@@ -49,6 +51,17 @@ TEST_CASE("the half turns of any field add up to twice the Euler characteristic"
       CHECK(all_half_turns(field_topology(mesh, random_field(mesh, seed))) == 2 * euler_characteristic(mesh));
     }
     CHECK(all_half_turns(field_topology(mesh, smooth_field(mesh))) == 2 * euler_characteristic(mesh));
+  }
+}
+
+TEST_CASE("right angles between neighbours, which could turn either way, turn one way seen from both") {
+  const SurfaceMesh mesh = grid(12, 9).mesh();
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    Random random(seed);
+    const auto field = field_of(mesh, [&](const Vector&, const Vector&) -> Vector {
+      return random.below(2) == 0 ? Vector::UnitX() : Vector::UnitY();
+    });
+    CHECK(all_half_turns(field_topology(mesh, field)) == 2);
   }
 }
 
@@ -116,6 +129,22 @@ TEST_CASE("where directions are missing nothing is claimed") {
   CHECK_FALSE(topology.loop_half_turns.at(0).has_value());
 }
 
+TEST_CASE("a vortex around which one direction is missing is not claimed") {
+  const SurfaceMesh mesh = grid(6, 6).mesh();
+  const auto all =
+      triangle_vectors(mesh, [](const Vector& c, const Vector&) { return Vector(c.x() - 3, c.y() - 3, 0); });
+  int around = 0;
+  for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t) {
+    const auto& corners = mesh.triangles()[t];
+    if (std::ranges::find(corners, 24) == corners.end()) continue;  // the vertex (3, 3)
+    ++around;
+    auto vectors = all;
+    vectors[t] = {0, 0, 0};
+    CHECK(field_topology(mesh, OrientationField::from_triangle_vectors(mesh, vectors)).singularities.empty());
+  }
+  CHECK(around == 6);
+}
+
 TEST_CASE("the Dirichlet energy is that of the formula, whatever the scale") {
   // Two equilateral triangles: the circumcentres are 1 / sqrt(3) apart, so the weight of their edge is sqrt(3).
   const double height = std::sqrt(0.75);
@@ -135,6 +164,35 @@ TEST_CASE("the Dirichlet energy is that of the formula, whatever the scale") {
   for (const auto& d : field.directions()) reversed.push_back({-d[0], -d[1], -d[2]});
   CHECK(dirichlet_energy(strip, OrientationField::from_triangle_vectors(strip, reversed)) ==
         dirichlet_energy(strip, field));
+}
+
+TEST_CASE("triangles without a direction have no energy: without them a strip with a seam and one cut open agree") {
+  Soup soup = moebius_strip(24, 2);
+  const SurfaceMesh strip = soup.mesh();
+  auto vectors = random_field(strip, 4).directions();
+  const auto whole = dirichlet_energy(strip, OrientationField::from_triangle_vectors(strip, vectors));
+  std::size_t between = 0;  // the first two lines across
+  for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+    const auto& [a, b, c] = soup.triangles[t];
+    if (std::max({a, b, c}) >= 2 * 3 || std::min({a, b, c}) >= 3) continue;
+    vectors[t] = {0, 0, 0};
+    ++between;
+  }
+  REQUIRE(between == 4);
+  const auto seamed = dirichlet_energy(strip, OrientationField::from_triangle_vectors(strip, vectors));
+  Soup cut{soup.vertices, {}};
+  std::vector<Vec3> kept;
+  for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
+    if (vectors[t] == Vec3{0, 0, 0}) continue;
+    cut.triangles.push_back(soup.triangles[t]);
+    kept.push_back(vectors[t]);
+  }
+  const SurfaceMesh open = cut.mesh();
+  REQUIRE(strip.components()[0].orientable == false);
+  REQUIRE(open.components()[0].orientable);
+  CHECK(dirichlet_energy(open, OrientationField::from_triangle_vectors(open, kept)) ==
+        doctest::Approx(seamed).epsilon(1e-12));
+  CHECK(seamed < whole);
 }
 
 }  // namespace pectinate::test

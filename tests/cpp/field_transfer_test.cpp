@@ -159,6 +159,8 @@ TEST_CASE("transfer by nearest point: what is too far, or near to a triangle wit
     CHECK(result.field.has_direction(t) == (!far && c.y() > 2));
   }
   CHECK(far_count > 10);
+  const auto above = moved(grid(4, 4), {0, 0, 0.25}).mesh();  // the limit itself is near enough
+  CHECK(transfer_by_nearest_point(source, field, above, 0.25).field.count(DirectionStatus::valid) == 16);
 }
 
 TEST_CASE("transfer by nearest point: bad input is refused") {

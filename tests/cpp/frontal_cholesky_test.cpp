@@ -4,8 +4,10 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
+#include <cstdlib>
 #include <set>
 
+#include "detail/elimination_tree.hpp"
 #include "detail/random.hpp"
 #include "pectinate/errors.hpp"
 
@@ -87,6 +89,19 @@ TEST_CASE("the frontal solution is that of a dense factorization") {
     const Eigen::VectorXcd other = some_vector(count, random);
     cholesky.replace(other);
     CHECK((dense(matrix, edges) * cholesky.solution() - other).norm() <= 1e-12 * other.norm());
+  }
+}
+
+TEST_CASE("the order of elimination does not depend on the C library's random numbers") {
+  Random random(5);
+  const Edges edges = some_graph(60, 50, random);
+  const auto expected = detail::make_elimination_tree(3000, edges);
+  for (const unsigned seed : {0U, 1U, 4321U, 123456789U}) {
+    std::srand(seed);
+    for (unsigned draw = 0; draw < seed % 7; ++draw) static_cast<void>(std::rand());
+    const auto tree = detail::make_elimination_tree(3000, edges);
+    CHECK(tree.order == expected.order);
+    CHECK(tree.parent == expected.parent);
   }
 }
 

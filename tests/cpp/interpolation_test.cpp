@@ -166,6 +166,38 @@ TEST_CASE("hard constraints are met exactly, and weighted ones the closer the he
   CHECK(last < 1e-8);
 }
 
+TEST_CASE("with the least and the greatest weight the equations are still solved") {
+  const auto uneven = [](const Vector& v) -> Vector {
+    return {v.x() + 0.3 * std::sin(v.y() + 0.2 * v.x()), v.y() + 0.3 * std::sin(0.7 * v.x()), 0};
+  };
+  const SurfaceMesh mesh = mapped(grid(150, 100), uneven).mesh();
+  const Vector slanted(1, 0.4, 0);
+  for (const double weight : {least_weight, greatest_weight}) {
+    // On a plane any weight, however small, makes a constant field of confidence 1.
+    const auto result = interpolate(mesh, Rows{held(mesh, 0, slanted, weight)});
+    CHECK(greatest_angle(mesh, result.field, [&](const Vector&, const Vector&) { return slanted; }) < 1e-4);
+    CHECK(*std::ranges::min_element(result.confidence) > 1 - 1e-4);
+    // Of two that weigh the same the field is halfway; where one weighs by far less it has no say.
+    const Vector other(1, 0, 0), middle = slanted.normalized() + other;
+    const auto last = count_of(mesh) - 1;
+    const auto both = interpolate(mesh, Rows{held(mesh, 0, slanted, least_weight), held(mesh, last, other, weight)});
+    const Vector expected = weight == least_weight ? middle : other;
+    CHECK(greatest_angle(mesh, both.field, [&](const Vector&, const Vector&) { return expected; }) < 1e-4);
+  }
+}
+
+TEST_CASE("on a curved surface weak weights leave little confidence, but a direction") {
+  const SurfaceMesh mesh = sphere(3).mesh();
+  const auto weak = interpolate(mesh, Rows{held(mesh, 0, {1, 1, 0}, 1e-3)});
+  const auto weaker = interpolate(mesh, Rows{held(mesh, 0, {1, 1, 0}, 1e-5)});
+  CHECK(*std::ranges::max_element(weak.confidence) < 0.01);
+  CHECK(weaker.field.count(DirectionStatus::valid) == mesh.triangle_count());
+  for (std::int32_t t = 0; t < count_of(mesh); ++t) {
+    CHECK(weaker.confidence[t] < 0.011 * weak.confidence[t]);
+    CHECK(line_angle(vector(weak.field.directions()[t]), vector(weaker.field.directions()[t])) < 1e-2);
+  }
+}
+
 TEST_CASE("reversing a constraint changes nothing, and rotating the surface rotates the field") {
   const Soup soup = demo();
   const SurfaceMesh mesh = soup.mesh();
@@ -252,6 +284,10 @@ TEST_CASE("without constraints the field is the smoothest one") {
     const auto other = interpolate(strip, random_rows(strip, 3, random));
     CHECK(dirichlet_energy(strip, result.field) < dirichlet_energy(strip, other.field));
   }
+  // Its magnitude is scaled to a greatest of 1, not cut off there.
+  const auto confidence = interpolate(sphere(3).mesh(), Rows{}).confidence;
+  CHECK(std::ranges::count_if(confidence, [](double c) { return c > 0.99999; }) < 100);
+  CHECK(*std::ranges::max_element(confidence) == doctest::Approx(1).epsilon(1e-12));
 }
 
 TEST_CASE("on a surface without sides the field does not depend on where the seam runs") {
@@ -295,8 +331,9 @@ TEST_CASE("constraints that make no sense are refused") {
   refused({{-1, {1, 0, 0}, hard, 0}}, "triangle -1 is for a mesh of 18");
   refused({{18, {1, 0, 0}, hard, 0}}, "triangle 18");
   refused({good, good}, "given twice");
-  for (const double weight : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
-    refused({{4, {1, 0, 0}, weight, 0}}, "not positive");
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const double weight : {0.0, -1.0, nan, -hard, 0.999 * least_weight, 1.001 * greatest_weight}) {
+    refused({{4, {1, 0, 0}, weight, 0}}, "triangle 4 has the weight ");
   }
   for (const double x : {0.0, hard, std::numeric_limits<double>::quiet_NaN()}) {
     refused({{4, {x, 0, 0}, hard, 0}}, "zero, not finite or normal");

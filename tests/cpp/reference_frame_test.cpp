@@ -4,10 +4,8 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
-#include <complex>
 #include <limits>
 
-#include "detail/critical_points.hpp"
 #include "disks.hpp"
 #include "fields.hpp"
 #include "pectinate/demo_atrium.hpp"
@@ -103,12 +101,11 @@ double logarithm_error(int around) {
   return error;
 }
 
-/// The values of a function of x + i y at the vertices of a flat mesh.
-template <class Function>
-std::vector<double> values_of(const Soup& soup, const Function& function) {
-  std::vector<double> values;
-  for (const auto& [x, y, z] : soup.vertices) values.push_back(function(std::complex<double>(x, y)));
-  return values;
+/// annulus(24, 4, 1, 2) as it lies, halved: a map onto the disk that needs no solver.
+Parameterization halved(const SurfaceMesh& mesh) {
+  Parameterization disk{{}, 0, 0, {{0, 0}, {0, 0}}, {}, {}};
+  for (const auto& [x, y, z] : mesh.vertices()) disk.points.push_back({x / 2, y / 2});
+  return disk;
 }
 
 struct Framed {
@@ -123,44 +120,6 @@ Framed framed_dome() {
 }
 
 }  // namespace
-
-TEST_CASE("critical points: those of polynomials") {
-  const auto disk = hexagonal_disk(6);
-  const auto centre = static_cast<std::int32_t>(disk.vertices.size()) - 1;
-  std::vector<bool> border(disk.vertices.size(), false);
-  std::fill_n(border.begin(), 36, true);
-  const auto found = [&](const auto& function) {
-    return detail::critical_points(disk.triangles, values_of(disk, function), border);
-  };
-  using Complex = std::complex<double>;
-  const auto check_centre = [&](const std::vector<CriticalPoint>& points, int index) {
-    REQUIRE(points.size() == 1);
-    CHECK(points[0].vertex == centre);
-    CHECK(points[0].index == index);
-  };
-  const Complex turned = std::polar(1.0, 0.1);
-  check_centre(found([](Complex z) { return std::norm(z); }), 1);
-  check_centre(found([](Complex z) { return -std::norm(z); }), 1);
-  check_centre(found([&](Complex z) { return (turned * z * z).real(); }), -1);
-  check_centre(found([&](Complex z) { return (turned * z * z * z).real(); }), -2);
-  CHECK(found([&](Complex z) { return (turned * z).real(); }).empty());
-  CHECK(found([](Complex z) { return z.real(); }).empty());
-  CHECK(found([](Complex) { return 0.5; }).empty());
-  CHECK(found([](Complex z) { return std::max(z.real(), 0.0); }).empty());
-}
-
-TEST_CASE("critical points: indices add up to the Euler characteristic") {
-  const auto soup = sphere(3);
-  for (const std::uint64_t seed : {1, 2, 3}) {
-    Random random(seed);
-    std::vector<double> values;
-    for (std::size_t v = 0; v < soup.vertices.size(); ++v) values.push_back(random.unit());
-    int sum = 0;
-    const std::vector<bool> none(values.size(), false);
-    for (const auto& point : detail::critical_points(soup.triangles, values, none)) sum += point.index;
-    CHECK(sum == 2);
-  }
-}
 
 TEST_CASE("frame: u is log r on an annulus, to second order" * doctest::skip(without_cgal)) {
   double last = logarithm_error(24);
@@ -277,6 +236,32 @@ TEST_CASE("frame: fragments have a basis too" * doctest::skip(without_cgal)) {
   CHECK(std::count_if(frame.u.begin(), frame.u.end(), [](double u) { return std::isnan(u); }) == 18);
   REQUIRE(frame.borrowed_triangles.size() >= 32);
   CHECK(frame.borrowed_triangles.back() == static_cast<std::int32_t>(mesh.triangle_count()) - 1);
+}
+
+TEST_CASE("frame: the centre of a hole may be critical, but is no vertex to report") {
+  const auto mesh = annulus(24, 4, 1, 2).mesh();
+  auto disk = halved(mesh);
+  CHECK(make_reference_frame(mesh, disk).critical_points.empty());
+  disk.loop_centres[1] = {0.9, 0};  // to the right of all around it
+  std::int32_t sum = 0;
+  for (const auto& [vertex, index] : make_reference_frame(mesh, disk).critical_points) {
+    CHECK((vertex >= 0 && vertex < static_cast<std::int32_t>(mesh.vertices().size())));
+    sum += index;
+  }
+  CHECK(sum == -1);
+}
+
+TEST_CASE("frame: where u varies by rounding alone the direction is borrowed") {
+  const auto mesh = annulus(24, 4, 1, 2).mesh();
+  auto disk = halved(mesh);
+  const auto& [a, b, c] = mesh.triangles()[40];
+  disk.points[a] = {0.3, 0.1};
+  disk.points[b] = {0.3, 0.2};
+  CHECK(make_reference_frame(mesh, disk).borrowed_triangles.empty());
+  for (const double x : {0.3, 0.3 + 4e-16}) {
+    disk.points[c] = {x, 0.3};
+    CHECK(make_reference_frame(mesh, disk).borrowed_triangles == std::vector{40});
+  }
 }
 
 TEST_CASE("equation 1: the paper's formula, free of signs" * doctest::skip(without_cgal)) {

@@ -118,6 +118,15 @@ TEST_CASE("single outliers are found and replaced, whatever stands around them")
   CHECK(degrees(median(left)) < 2);
 }
 
+TEST_CASE("where fibres are of two opinions the slightly more common one prevails") {
+  const SurfaceMesh mesh = grid(40, 40).mesh();
+  const auto minority = [](std::int32_t t) { return t % 17 < 8; };
+  const auto field =
+      turned(mesh, constant_field(mesh, {1, 0, 0}), [&](std::int32_t t) { return minority(t) ? 0.7 : 0; });
+  const auto result = smooth(mesh, field, {.length = 5, .outlier_angle = 0.17});
+  for (std::int32_t t = 0; t < count_of(mesh); ++t) CHECK((result.outliers[t] == 1) == minority(t));
+}
+
 TEST_CASE("nothing passes a barrier") {
   const SurfaceMesh mesh = grid(40, 20, 0.5).mesh();
   std::vector<std::int32_t> label(mesh.triangle_count());
@@ -141,6 +150,22 @@ TEST_CASE("missing fibres stay missing unless they are to be filled") {
     CHECK(kept.field.has_direction(t) == field.has_direction(t));
     CHECK(std::isnan(filled.moved_angles[t]) == !field.has_direction(t));
     CHECK(line_angle(vector(filled.field.directions()[t]), Vector(2, 1, 0)) <= 1e-9);
+  }
+}
+
+TEST_CASE("over the greatest length fibres with a little noise become one, also beside components without any") {
+  const SurfaceMesh mesh = together(jittered_grid(60, 60), moved(grid(60, 60), {70, 0, 0})).mesh();
+  Random random(4);
+  const auto field = field_of(mesh, [&](const Vector& at, const Vector&) -> Vector {
+    const double angle = 0.5 + 0.1 * normal_number(random);
+    return at.x() > 65 ? Vector::Zero() : Vector(std::cos(angle), std::sin(angle), 0);
+  });
+  const auto result = smooth(mesh, field, {.length = 10 * mesh.bounding_box_diagonal(), .fill_missing = true});
+  const Vector one = vector(result.field.directions()[0]);
+  CHECK(line_angle(one, Vector(std::cos(0.5), std::sin(0.5), 0)) < 0.01);
+  for (std::int32_t t = 0; t < count_of(mesh); ++t) {
+    if (!field.has_direction(t)) continue;
+    CHECK(line_angle(vector(result.field.directions()[t]), one) < 1e-3);
   }
 }
 
@@ -169,6 +194,37 @@ TEST_CASE("signs change nothing, and rotation and scale with length nothing but 
   }
 }
 
+TEST_CASE("on surfaces without sides it does not matter where the seam runs, and nothing passes a barrier") {
+  for (const Soup& soup : {moebius_strip(40, 5), klein_bottle(24, 14)}) {
+    const SurfaceMesh mesh = soup.mesh();
+    const auto vectors = random_field(mesh, 5).directions(), others = random_field(mesh, 6).directions();
+    std::vector<std::int32_t> label;
+    for (std::int32_t t = 0; t < count_of(mesh); ++t) label.push_back(centre(mesh, t).x() > 0 ? 1 : 0);
+    const auto smoothed = [&](const SurfaceMesh& on, const std::vector<Vec3>& given) {
+      return smooth(on, OrientationField::from_triangle_vectors(on, given), {.length = 0.4}, label).field.directions();
+    };
+    const auto expected = smoothed(mesh, vectors);
+    const auto check_same = [&](const std::vector<Vec3>& directions, std::int32_t except) {
+      for (std::int32_t t = 0; t < count_of(mesh); ++t) {
+        if (label[t] != except) CHECK(line_angle(vector(directions[t]), vector(expected[t])) <= 1e-8);
+      }
+    };
+    Random random(11);
+    Soup wound = soup;
+    for (auto& [a, b, c] : wound.triangles) {
+      if (random.below(2) == 0) std::swap(a, b);
+    }
+    check_same(smoothed(wound.mesh(), vectors), -1);
+    for (const std::int32_t changed : {0, 1}) {
+      auto mixed = vectors;
+      for (std::int32_t t = 0; t < count_of(mesh); ++t) {
+        if (label[t] == changed) mixed[t] = others[t];
+      }
+      check_same(smoothed(mesh, mixed), changed);
+    }
+  }
+}
+
 TEST_CASE("surfaces of every kind are smoothed") {
   for (const Soup& soup : {one_triangle(), tetrahedron(), sphere(2), torus(14, 9), moebius_strip(30, 4),
                            klein_bottle(20, 12), together(one_triangle(), moved(grid(4, 4), {9, 0, 0}))}) {
@@ -183,13 +239,22 @@ TEST_CASE("smoothing options out of range are refused") {
   const SurfaceMesh mesh = grid(3, 3).mesh();
   const auto field = constant_field(mesh, {1, 0, 0});
   const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
-  for (const double length : {0.0, -1.0, nan, infinity}) {
+  const double diagonal = mesh.bounding_box_diagonal();
+  for (const double length : {0.0, -1.0, nan, infinity, 1e300, 0.99e-6 * diagonal, 10.01 * diagonal}) {
     CHECK_THROWS_AS(smooth(mesh, field, {.length = length}), InvalidOption);
   }
+  for (const double length : {1.01e-6 * diagonal, 9.99 * diagonal}) {
+    CHECK(smooth(mesh, field, {.length = length}).field.count(DirectionStatus::valid) == mesh.triangle_count());
+  }
+  CHECK_THROWS_WITH_AS(smooth(mesh, field, {.length = 1e300}), doctest::Contains("length is 1e+300, but"),
+                       InvalidOption);
   for (const double angle : {0.0, 2.0, nan}) {
     CHECK_THROWS_AS(smooth(mesh, field, {.outlier_angle = angle}), InvalidOption);
   }
-  CHECK_THROWS_AS(smooth(mesh, field, {}, std::vector<std::int32_t>{1, 2}), InvalidOption);
+  CHECK(smooth(mesh, field, {.outlier_angle = std::numbers::pi / 2}).outliers == std::vector<std::uint8_t>(18, 0));
+  for (const std::size_t count : {1, 17, 19}) {
+    CHECK_THROWS_AS(smooth(mesh, field, {}, std::vector<std::int32_t>(count)), InvalidOption);
+  }
   CHECK_THROWS_AS(smooth(one_triangle().mesh(), field), InvalidField);
 }
 

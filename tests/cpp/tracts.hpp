@@ -98,4 +98,25 @@ inline detail::Vector random_place(const SurfaceMesh& mesh, Random& random) {
   return a + (outside ? 1 - u : u) * (b - a) + (outside ? 1 - v : v) * (c - a);
 }
 
+/// The flat ring between the radii 1 and 2.
+inline Soup ring(int around, int rows) {
+  return mapped(cylinder(around, rows, 1, 1),
+                [](const detail::Vector& v) { return detail::Vector((1 + v.z()) * v.x(), (1 + v.z()) * v.y(), 0); });
+}
+
+/// All that is true of constraints.
+inline void check_constraints(const SurfaceMesh& mesh, const Constraints& constraints) {
+  std::int32_t last = -1;
+  for (const auto& [triangle, direction, weight, tract] : constraints.triangles) {
+    CHECK(triangle > last);
+    last = triangle;
+    CHECK(std::abs(detail::vector(direction).norm() - 1) < 1e-14);
+    CHECK(std::abs(detail::vector(direction).dot(detail::vector(mesh.triangle_normals()[triangle]))) < 1e-13);
+    CHECK(weight > 0);
+    CHECK(tract >= -1);
+  }
+  CHECK(std::is_sorted(constraints.conflicts.begin(), constraints.conflicts.end(),
+                       [](const auto& a, const auto& b) { return a.triangle < b.triangle; }));
+}
+
 }  // namespace pectinate::test

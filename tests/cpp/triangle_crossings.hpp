@@ -27,9 +27,24 @@ inline double volume(const detail::Vector& a, const detail::Vector& b, const det
   return (b - a).cross(c - a).dot(d - a);
 }
 
+/// Whether a line in the plane of a triangle keeps the segment from p to q away from it; lines are its sides and pq.
+inline bool parted_in_plane(const detail::Vector& p, const detail::Vector& q, const Corners& t) {
+  const detail::Vector normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  for (const detail::Vector side : {t[1] - t[0], t[2] - t[1], t[0] - t[2], q - p}) {
+    const detail::Vector across = normal.cross(side);
+    const auto [low, high] = std::minmax({across.dot(t[0]), across.dot(t[1]), across.dot(t[2])});
+    const auto [from, to] = std::minmax({across.dot(p), across.dot(q)});
+    if (to < low || high < from) return true;
+  }
+  return false;
+}
+
 /// Touching counts.
 inline bool pierces(const detail::Vector& p, const detail::Vector& q, const Corners& t) {
-  if (volume(t[0], t[1], t[2], p) * volume(t[0], t[1], t[2], q) > 0) return false;
+  const double p_side = volume(t[0], t[1], t[2], p), q_side = volume(t[0], t[1], t[2], q);
+  const double rounding = 1e-10 * std::pow((t[1] - t[0]).norm(), 3);
+  if (std::abs(p_side) < rounding && std::abs(q_side) < rounding) return !parted_in_plane(p, q, t);
+  if (p_side * q_side > 0) return false;
   const std::array<double, 3> turns{volume(p, q, t[0], t[1]), volume(p, q, t[1], t[2]), volume(p, q, t[2], t[0])};
   const auto [least, most] = std::minmax_element(turns.begin(), turns.end());
   return *least >= 0 || *most <= 0;

@@ -23,6 +23,14 @@ def grid(columns: int = 4, rows: int = 3, *, spacing: float = 1.0) -> Mesh:
     return vertices, np.stack([lower, upper], axis=1).reshape(-1, 3)
 
 
+def with_hole(columns: int, size: float) -> Mesh:
+    """A square of one size with a square hole in its middle, a little to the right."""
+    vertices, triangles = grid(columns, columns, spacing=size / columns)
+    centres = vertices[triangles].mean(axis=1)
+    inside = (np.abs(centres[:, 0] - 0.6 * size) < size / 8) & (np.abs(centres[:, 1] - size / 2) < size / 8)
+    return vertices, triangles[~inside]
+
+
 def octahedron() -> Mesh:
     """A closed surface of 8 triangles facing outwards, radius 1."""
     vertices = np.concatenate([np.eye(3), -np.eye(3)])
@@ -69,6 +77,17 @@ def moebius_strip(segments: int = 30, *, radius: float = 2.0, width: float = 1.0
     high, next_high = low + segments, np.append(low[1:] + segments, 0)
     first, second = np.column_stack([low, next_low, next_high]), np.column_stack([low, next_high, high])
     return vertices, np.concatenate([first, second])
+
+
+def annulus(around: int = 48, across: int = 8, *, inner: float = 4.0, outer: float = 10.0) -> Mesh:
+    """A flat ring, its longer loop outside."""
+    radii = np.linspace(inner, outer, across + 1)
+    angles = np.arange(around) * 2 * np.pi / around
+    vertices = np.stack(np.broadcast_arrays(radii * np.cos(angles)[:, None], radii * np.sin(angles)[:, None], 0.0), -1)
+    i, j = (k.ravel() for k in np.meshgrid(np.arange(around), np.arange(across), indexing="ij"))
+    a, b = i * (across + 1) + j, (i + 1) % around * (across + 1) + j
+    quads = np.column_stack([a, a + 1, b + 1]), np.column_stack([a, b + 1, b])
+    return vertices.reshape(-1, 3), np.concatenate(quads)
 
 
 def three_triangles_on_an_edge() -> Mesh:

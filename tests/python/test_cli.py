@@ -11,41 +11,14 @@ import signal
 import subprocess
 import sys
 from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
 import pytest
 
 import pectinate
+from command_line import SIDE, check_error, run_json, write_lines
 from pectinate.cli import ExitCode, commands, main
 from pectinate.cli.progress import ProgressBar
-
-SIDE = 12  # mm, of a flat square with edges of 1 mm
-
-
-@pytest.fixture
-def square(tmp_path: Path) -> Path:
-    """A flat square with fibres along x, as openCARP files."""
-    x, y = np.meshgrid(np.arange(SIDE + 1), np.arange(SIDE + 1))
-    points = np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)])
-    corner = (np.arange(SIDE)[:, None] * (SIDE + 1) + np.arange(SIDE)).ravel()
-    lower = np.column_stack([corner, corner + 1, corner + SIDE + 2])
-    upper = np.column_stack([corner, corner + SIDE + 2, corner + SIDE + 1])
-    triangles = np.concatenate([lower, upper])
-    base = tmp_path / "square"
-    write_lines(base.with_suffix(".pts"), [str(len(points)), *(f"{a} {b} {c}" for a, b, c in points)])
-    write_lines(base.with_suffix(".elem"), [str(len(triangles)), *(f"Tr {a} {b} {c} 1" for a, b, c in triangles)])
-    write_lines(base.with_suffix(".lon"), ["1", *("1 0 0" for _ in triangles)])
-    return base.with_suffix(".elem")
-
-
-def write_lines(path: Path, lines: list[str]) -> None:
-    path.write_text("\n".join(lines) + "\n")
-
-
-def run_json(capsys: pytest.CaptureFixture[str], *words: object) -> dict:
-    assert main([str(word) for word in words] + ["--json"]) == ExitCode.DONE
-    return json.loads(capsys.readouterr().out)
 
 
 def test_place_writes_every_format_and_reports_it(square, tmp_path, capsys):
@@ -140,39 +113,31 @@ def test_demo_writes_streamlines_and_picture(tmp_path, capsys):
         (["paint"], ExitCode.USAGE, "paint"),
         (["place"], ExitCode.USAGE, "MESH"),
         (["place", "SQUARE", "--seeds", "many"], ExitCode.USAGE, "many"),
-        (["place", "SQUARE", "--seeds", "0"], ExitCode.USAGE, "seed_count"),
+        (["place", "SQUARE", "--seeds", "0"], ExitCode.USAGE, "--seeds is 0"),
         (["place", "SQUARE", "--threads", "99999999999999999999"], ExitCode.USAGE, "thread"),
         (["place", "SQUARE", "--random-seed", "-1"], ExitCode.USAGE, "random"),
-        (["place", "SQUARE", "--separation", "nan"], ExitCode.USAGE, "separation_distance"),
-        (["place", "SQUARE", "--method", "nearest"], ExitCode.USAGE, "nearest"),
+        (["place", "SQUARE", "--separation", "nan"], ExitCode.USAGE, "--separation is nan"),
+        (["place", "SQUARE", "--method", "nearest"], ExitCode.USAGE, "--method is 'nearest'"),
+        (["place", "SQUARE", "--abrupt-turn-angle", "181"], ExitCode.USAGE, "at most 180 degrees"),
+        (["place", "SQUARE", "--minimum-length", "-1"], ExitCode.USAGE, "--minimum-length is -1"),
+        (["place", "SQUARE", "--tubes", "FOLDER/t.ply", "--tube-radius", "-1"], ExitCode.USAGE, "--tube-radius is -1"),
         (["place", "SQUARE", "--units", "inch"], ExitCode.USAGE, "inch"),
         (["place", "SQUARE", "--out", "FOLDER/r.txt"], ExitCode.USAGE, ".txt"),
         (["place", "SQUARE", "--figure", "FOLDER/f.npz"], ExitCode.USAGE, "f.npz"),
         (["place", "SQUARE", "--tubes", "FOLDER/r.npz"], ExitCode.USAGE, "r.npz"),
         (["place", "SQUARE", "--figure", "FOLDER/f.png", "--views", "sideways"], ExitCode.USAGE, "sideways"),
-        (["place", "SQUARE", "--tubes", "FOLDER/t.ply", "--tube-sides", "2"], ExitCode.USAGE, "side_count"),
+        (["place", "SQUARE", "--tubes", "FOLDER/t.ply", "--tube-sides", "2"], ExitCode.USAGE, "--tube-sides"),
         (["place", "FOLDER/none.elem"], ExitCode.REJECTED, "none"),
         (["place", "SQUARE", "--field", "FOLDER/none.lon"], ExitCode.REJECTED, "none"),
         (["place", "FOLDER"], ExitCode.REJECTED, "FOLDER"),
         (["info", "FOLDER/mesh.xyz"], ExitCode.REJECTED, "xyz"),
         (["place", "SQUARE", "--out", "FOLDER/none/r.npz"], ExitCode.FAILED, "none"),
         (["demo", "--out", "SQUARE/x", "--edge-length", "4"], ExitCode.FAILED, "square"),
-        (["demo", "--edge-length", "1000"], ExitCode.USAGE, "edge_length"),
+        (["demo", "--edge-length", "1000"], ExitCode.USAGE, "--edge-length is 1000"),
     ],
 )
 def test_errors_are_one_line_and_a_code(square, tmp_path, capsys, words, code, said):
     check_error({"SQUARE": str(square), "FOLDER": str(tmp_path)}, capsys, words, code, said)
-
-
-def check_error(names, capsys, words, code, said):
-    for name, path in names.items():
-        words = [word.replace(name, path) for word in words]
-    assert main(words) == code
-    error = capsys.readouterr().err
-    assert error.startswith("pectinate: error: ")
-    assert error.count("\n") == 1
-    assert names.get(said, said) in error
-    assert "fault of pectinate" not in error
 
 
 def test_broken_input_is_rejected(square, capsys):
@@ -249,137 +214,3 @@ def test_interrupt_ends_at_once_with_its_code(tmp_path):
     os.close(controller)
     assert process.returncode == ExitCode.INTERRUPTED
     assert output == b""
-
-
-@pytest.fixture
-def tracts(tmp_path: Path) -> Path:
-    """A tract across the square, and a name for its border."""
-    path = tmp_path / "tracts.json"
-    tract = pectinate.Tract([[1, 2, 0], [11, 9, 0]], name="slope")
-    condition = pectinate.BoundaryCondition("border", "parallel", weight=0.5)
-    pectinate.TractSet([tract], [condition], {"border": [0, 0, 0]}).save(path)
-    return path
-
-
-def test_interpolate_writes_and_reports_a_field(square, tracts, tmp_path, capsys):
-    files = [tmp_path / "f.vtp", tmp_path / "f.lon"]
-    report = run_json(capsys, "interpolate", square, tracts, "--out", files[0], "--out", files[1], "--units", "mm")
-    expected = pectinate.interpolate(pectinate.load(square, field=None), tracts)
-    assert report["interpolation"] == expected.report()
-    assert report["surface"]["source"] == str(square.with_suffix(""))
-    assert report["files"] == [str(tmp_path / name) for name in ("f.vtp", "f.pts", "f.elem", "f.lon")]
-    for path in (files[0], files[1]):
-        written = pectinate.load(path, units="mm" if path.suffix == ".vtp" else "um").data
-        assert written.vectors.tolist() == expected.field.directions.tolist()
-        assert written.second_vectors is None
-
-
-def test_interpolate_passes_each_option_on(square, tracts, tmp_path, capsys):
-    words = ["--method", "reference_frame", "--outer", "border", "--inner-point", "6,6,0", "--second", "transverse"]
-    words += ["--conflict-angle", "20", "--maximum-distance", "0.5", "--per-vertex", "--out", tmp_path / "f.vtu"]
-    found = run_json(capsys, "interpolate", square, tracts, *words)["interpolation"]
-    options = {"outer_loop": 0, "inner_point": (6, 6, 0), "conflict_angle": math.radians(20), "maximum_distance": 0.5}
-    expected = pectinate.interpolate(square, tracts, method="reference_frame", **options)
-    assert found == expected.report()
-    dataset = pytest.importorskip("pyvista").read(tmp_path / "f.vtu")
-    assert set(dataset.cell_data) == {"fiber", "sheet", "elemTag", "confidence", "angle"}
-    assert set(dataset.point_data) == {"fiber"}
-
-
-def test_interpolate_prints_for_people(square, tracts, capsys):
-    assert main(["interpolate", str(square), str(tracts), "--outer", "0"]) == ExitCode.DONE
-    printed = capsys.readouterr().out
-    for said in ("slope: 12.2 mm through", "loop 0: parallel", "outer loop 0", "flipped triangles     0", "energy"):
-        assert said in printed
-
-
-def test_interpolate_draws(square, tracts, tmp_path):
-    picture = tmp_path / "f.png"
-    words = [
-        "interpolate",
-        str(square),
-        str(tracts),
-        "--figure",
-        str(picture),
-        "--separation",
-        "2",
-        "--views",
-        "superior",
-    ]
-    assert main([*words, "--quiet"]) == ExitCode.DONE
-    assert picture.read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
-
-
-def test_parameterize_reports_the_disk(square, tracts, tmp_path, capsys):
-    pytest.importorskip("matplotlib")
-    picture = tmp_path / "disk.png"
-    words = ["--tracts", tracts, "--outer", "border", "--inner-point=6,6,-0.1", "--figure", picture]
-    report = run_json(capsys, "parameterize", square, *words)
-    assert report["disk"] == pectinate.parameterize(square, outer_loop=0, inner_point=(6, 6, -0.1)).report()
-    assert report["files"] == [str(picture)]
-    assert picture.read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
-    assert main(["parameterize", str(square)]) == ExitCode.DONE
-    assert "outer loop 0, inner none" in capsys.readouterr().out
-
-
-def test_smooth_writes_and_reports(square, tmp_path, capsys):
-    words = ["--length", "2", "--barriers", "tags", "--outlier-angle", "20", "--fill-missing"]
-    report = run_json(capsys, "smooth", square, *words, "--out", tmp_path / "s.vtp")
-    options = {"length": 2, "barriers": "tags", "outlier_angle": math.radians(20)}
-    expected = pectinate.smooth(square, fill_missing=True, **options)
-    assert report["smoothing"] == expected.report()
-    assert pectinate.load(tmp_path / "s.vtp").data.vectors.tolist() == expected.field.directions.tolist()
-    assert main(["smooth", str(square)]) == ExitCode.DONE
-    assert "outliers replaced" in capsys.readouterr().out
-
-
-def test_compare_reports_angles_per_region(square, tmp_path, capsys):
-    other = tmp_path / "other.vtp"
-    pectinate.save_surface(pectinate.add_noise(pectinate.load(square), 0.3), other)
-    report = run_json(capsys, "compare", square, other, "--out", tmp_path / "c.vtp", "--second", "none")
-    assert report["comparison"] == pectinate.compare(square, other).report()
-    assert set(report["comparison"]["angles_per_region"]) == {"1"}
-    near = run_json(capsys, "compare", square, other, "--how", "nearest", "--maximum-distance", "0.5")
-    expected = pectinate.compare(square, other, how="nearest", maximum_distance=0.5)
-    assert near["comparison"] == expected.report()
-    assert main(["compare", str(square), str(other), "--how", "nearest"]) == ExitCode.DONE
-    printed = capsys.readouterr().out
-    assert "degrees (median)" in printed
-    assert "distance" in printed
-
-
-def test_info_names_loops(square, tracts, capsys):
-    (loop,) = run_json(capsys, "info", square, "--tracts", tracts)["boundary_loops"]
-    assert loop["names"] == ["border"]
-    assert main(["info", str(square), "--tracts", str(tracts)]) == ExitCode.DONE
-    assert "border: length" in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    ("words", "code", "said"),
-    [
-        (["interpolate", "SQUARE"], ExitCode.USAGE, "required: TRACTS"),
-        (["interpolate", "SQUARE", "TRACTS", "--method", "magic"], ExitCode.USAGE, "magic"),
-        (["interpolate", "SQUARE", "TRACTS", "--outer", "valve"], ExitCode.USAGE, "valve"),
-        (["interpolate", "SQUARE", "TRACTS", "--outer", "7"], ExitCode.USAGE, "loop 7"),
-        (["interpolate", "SQUARE", "TRACTS", "--inner-point", "1,2"], ExitCode.USAGE, "1,2"),
-        (["interpolate", "SQUARE", "TRACTS", "--second", "sheet", "--out", "FOLDER/f.vtp"], ExitCode.USAGE, "sheet"),
-        (["interpolate", "SQUARE", "TRACTS", "--out", "FOLDER/f.ply"], ExitCode.USAGE, ".ply"),
-        (["interpolate", "SQUARE", "TRACTS", "--out", "FOLDER/none/f.lon"], ExitCode.FAILED, "no folder"),
-        (["interpolate", "SQUARE", "TRACTS", "--maximum-distance", "-1"], ExitCode.USAGE, "maximum_distance"),
-        (["interpolate", "SQUARE", "FOLDER/none.json"], ExitCode.REJECTED, "none.json"),
-        (["interpolate", "SQUARE", "SQUARE"], ExitCode.REJECTED, "no JSON"),
-        (["info", "SQUARE", "--tracts", "FOLDER/none.json"], ExitCode.REJECTED, "none.json"),
-        (["parameterize", "SQUARE", "--figure", "FOLDER/f.npz"], ExitCode.USAGE, "f.npz"),
-        (["smooth", "SQUARE", "--length", "-1"], ExitCode.USAGE, "length"),
-        (["smooth", "SQUARE", "--barriers", "walls"], ExitCode.USAGE, "walls"),
-        (["compare", "SQUARE"], ExitCode.USAGE, "SECOND"),
-        (["compare", "SQUARE", "SQUARE", "--how", "somehow"], ExitCode.USAGE, "somehow"),
-        (["compare", "SQUARE", "SQUARE", "--how", "disks"], ExitCode.USAGE, "loop"),
-        (["compare", "SQUARE", "SQUARE", "--how", "disks", "--pair", "0"], ExitCode.USAGE, "pair of loops"),
-        (["compare", "SQUARE", "FOLDER/none.vtp"], ExitCode.REJECTED, "none.vtp"),
-    ],
-)
-def test_errors_of_the_commands_on_fields(square, tracts, tmp_path, capsys, words, code, said):
-    names = {"SQUARE": str(square), "FOLDER": str(tmp_path), "TRACTS": str(tracts)}
-    check_error(names, capsys, words, code, said)

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
 import pectinate
-from meshes import Mesh, grid, octahedron, two_components
+from marks import needs_map
+from meshes import Mesh, grid, octahedron, two_components, with_hole
 from pectinate import Model, add_noise, compare
 from pectinate.angle_statistics import angle_statistics, angle_statistics_per_region
 from pectinate.errors import InvalidField, InvalidMesh, InvalidOption
@@ -22,14 +23,6 @@ from pectinate.errors import InvalidField, InvalidMesh, InvalidOption
 def with_angle(mesh: Mesh, degrees: float) -> Model:
     angle = math.radians(degrees)
     return pectinate.load((*mesh, np.tile([math.cos(angle), math.sin(angle), 0], (len(mesh[1]), 1))))
-
-
-def with_hole(columns: int, size: float) -> Mesh:
-    """A square of one size with a square hole in its middle, a little to the right."""
-    vertices, triangles = grid(columns, columns, spacing=size / columns)
-    centres = vertices[triangles].mean(axis=1)
-    inside = (np.abs(centres[:, 0] - 0.6 * size) < size / 8) & (np.abs(centres[:, 1] - size / 2) < size / 8)
-    return vertices, triangles[~inside]
 
 
 def test_the_angle_between_two_constant_fields():
@@ -85,6 +78,7 @@ def test_by_the_nearest_point():
         compare(coarse, above, how="nearest", maximum_distance=-1)
 
 
+@needs_map
 def test_through_the_disks():
     names = {"hole": np.array([0.6, 0.5, 0])}
     small = with_angle(with_hole(16, 1.0), 20).with_loop_points(names)
@@ -102,6 +96,34 @@ def test_through_the_disks():
         compare(small, large, how="disks", loop_pairs=[("window", "hole")])
     with pytest.raises(InvalidOption, match="'door'"):
         compare(small, large, how="disks", outer_loops=("door", None))
+
+
+@needs_map
+def test_the_chosen_outer_loops_become_the_circles():
+    model = with_angle(with_hole(16, 1.0), 0).with_loop_points({"hole": np.array([0.6, 0.5, 0]), "rim": np.zeros(3)})
+    pairs = [("hole", "hole"), ("rim", "rim")]
+    angles = compare(model, model, how="disks", outer_loops=("hole", "hole"), loop_pairs=pairs).angles
+    assert np.nanmax(angles) < 1e-6
+    for outer_loops in (("hole", None), (None, "hole")):
+        with pytest.raises(InvalidOption, match="is of an outer loop and an inner one"):
+            compare(model, model, how="disks", outer_loops=outer_loops, loop_pairs=pairs)
+
+
+@pytest.mark.parametrize(
+    ("how", "options"),
+    [
+        ("same", {"maximum_distance": 2.0}),
+        ("disks", {"maximum_distance": 2.0}),
+        ("same", {"outer_loops": (0, None)}),
+        ("nearest", {"outer_loops": (None, 0)}),
+        ("same", {"loop_pairs": []}),
+        ("nearest", {"loop_pairs": [(0, 0)]}),
+    ],
+)
+def test_options_of_another_way_are_refused(how, options):
+    (name,) = options
+    with pytest.raises(InvalidOption, match=f"{name} is given, but belongs to how='"):
+        compare(with_angle(grid(), 0), with_angle(grid(), 0), how=how, **options)
 
 
 def test_surfaces_must_be_the_same_or_have_a_disk():

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from marks import needs_map
 from meshes import grid, single_triangle, sphere, torus
 from pectinate import _core
 from pectinate._core import OrientationField, SurfaceMesh
 from pectinate.errors import InvalidField, InvalidOption
-
-needs_map = pytest.mark.skipif(not _core.has_parameterization(), reason="built without CGAL")
 
 
 def flat(columns: int = 6, rows: int = 4) -> SurfaceMesh:

@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from marks import needs_map
 from meshes import Mesh, grid
 from pectinate import _core, datasets, place_streamlines
 from pectinate.errors import InvalidFile, InvalidOption, MissingDependency
@@ -22,7 +23,6 @@ from pectinate.figure.values import ColorScale
 
 matplotlib = pytest.importorskip("matplotlib")
 drawn = pytest.mark.usefixtures("opengl")
-mapped = pytest.mark.skipif(not _core.has_parameterization(), reason="built without CGAL")
 
 SIZE = (240, 180)
 SCALE = 0.025  # mm per pixel
@@ -278,7 +278,7 @@ def disk_pixel(picture: NDArray[np.uint8], x: float, y: float, window: tuple[flo
     return picture[int(row), int(column)].astype(int)
 
 
-@mapped
+@needs_map
 @pytest.mark.parametrize("window", [WHOLE_DISK, (0.4, 0.3, 0.5)])
 def test_the_disk_has_the_colors_of_u(window: tuple[float, float, float]) -> None:
     mesh = annulus()
@@ -306,7 +306,7 @@ def test_the_disk_has_the_colors_of_u(window: tuple[float, float, float]) -> Non
         assert frame.u[np.argmax(np.hypot(*parameterization.points.T))] == pytest.approx(1)
 
 
-@mapped
+@needs_map
 def test_isolines_names_and_lenses_are_drawn_on_the_disk(tmp_path: Path) -> None:
     mesh = annulus()
     arguments = (*framed(mesh), mesh)
@@ -335,7 +335,7 @@ def disk_row(picture: NDArray[np.int64]) -> NDArray[np.int64]:
     return picture[round(0.02 * 300 + 150), : round(1.02 * 300)]
 
 
-@mapped
+@needs_map
 def test_disks_of_another_surface_or_with_bad_options_are_refused() -> None:
     mesh = annulus()
     parameterization, frame = framed(mesh)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, diags_array, eye_array
 from scipy.sparse.linalg import spsolve
 
+from marks import needs_map
 from meshes import grid, moebius_strip, sphere, torus, two_components
 from pectinate import OrientationField, SurfaceMesh, errors, load
 from pectinate._core import (
@@ -17,12 +18,9 @@ from pectinate._core import (
     ReferenceFrame,
     field_angles,
     field_from_angles,
-    has_parameterization,
     make_reference_frame,
     parameterize,
 )
-
-needs_cgal = pytest.mark.skipif(not has_parameterization(), reason="built without CGAL")
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -75,7 +73,7 @@ def solve(matrix: coo_array, fixed: Ints, values: Floats) -> Floats:
     return spsolve((eye_array(matrix.shape[0]) - diags_array(free) @ matrix).tocsc(), right_side)
 
 
-@needs_cgal
+@needs_map
 def test_the_map_is_that_of_scipy() -> None:
     mesh = bumpy_sheet()
     map_ = parameterize(mesh)
@@ -90,7 +88,7 @@ def test_the_map_is_that_of_scipy() -> None:
     assert map_.loop_centres[0].tolist() == [0, 0]
 
 
-@needs_cgal
+@needs_map
 def test_distortion_is_that_of_the_singular_values() -> None:
     mesh = bumpy_sheet()
     map_ = parameterize(mesh)
@@ -105,7 +103,7 @@ def test_distortion_is_that_of_the_singular_values() -> None:
     np.testing.assert_allclose(map_.area_ratio, shares, rtol=1e-9)
 
 
-@needs_cgal
+@needs_map
 def test_u_is_that_of_scipy_and_e_l_its_gradient() -> None:
     mesh = bumpy_sheet()
     map_ = parameterize(mesh)
@@ -127,7 +125,7 @@ def test_u_is_that_of_scipy_and_e_l_its_gradient() -> None:
     np.testing.assert_allclose(frame.transverse, np.cross(mesh.triangle_normals, frame.longitudinal), atol=1e-14)
 
 
-@needs_cgal
+@needs_map
 def test_angles_and_field_undo_each_other() -> None:
     mesh = bumpy_sheet()
     frame = make_reference_frame(mesh, parameterize(mesh))
@@ -141,7 +139,7 @@ def test_angles_and_field_undo_each_other() -> None:
     assert np.abs(field_angles(frame, whole)).max() < 1e-14
 
 
-@needs_cgal
+@needs_map
 def test_arrays_are_typed_views_that_cannot_be_written() -> None:
     mesh = bumpy_sheet()
     count, loops = mesh.triangle_count, len(mesh.boundary_loops)
@@ -181,7 +179,7 @@ def test_a_torus_with_a_hole_is_refused() -> None:
         parameterize(SurfaceMesh(vertices, triangles[1:]))
 
 
-@needs_cgal
+@needs_map
 def test_bad_options_are_refused() -> None:
     mesh = bumpy_sheet()
     for loop in (-1, 2):
@@ -206,7 +204,7 @@ def test_bad_options_are_refused() -> None:
         make_reference_frame(SurfaceMesh(*grid()), map_)
 
 
-@needs_cgal
+@needs_map
 def test_bad_angles_are_refused() -> None:
     mesh = bumpy_sheet()
     frame = make_reference_frame(mesh, parameterize(mesh))
@@ -233,7 +231,7 @@ def check_frame(mesh: SurfaceMesh, map_: Parameterization, frame: ReferenceFrame
         assert np.abs((basis * mesh.triangle_normals).sum(axis=1)).max() < 1e-12
 
 
-@needs_cgal
+@needs_map
 @pytest.mark.parametrize("name", ["la_epi", "la_endo", "ra_epi", "ra_endo"])
 def test_measured_atria_have_a_map_without_flips_and_a_frame_without_critical_points(
     human_atrium: Path, name: str

@@ -20,7 +20,7 @@ from pectinate.errors import InvalidFile, InvalidOption
 HEAD = {"format": "pectinate tracts", "version": 1}
 numbers = st.floats(allow_nan=False, allow_infinity=False)
 points = st.tuples(numbers, numbers, numbers)
-weights = st.just(math.inf) | st.floats(min_value=0, exclude_min=True, allow_infinity=False)
+weights = st.just(math.inf) | st.floats(*pectinate.tracts.WEIGHT_RANGE)
 tracts = st.builds(
     Tract, st.lists(points, min_size=2, max_size=5).map(np.array), name=st.text(), weight=weights, description=st.text()
 )
@@ -95,6 +95,9 @@ LINE = [[0, 0, 0], [1, 0, 0]]
         (document(tracts=[{"points": [*LINE, [1, True, 3]]}]), "tracts[0].points[2][1]", "True is not a number"),
         (document(tracts=[{"points": [*LINE, [1, 10**400, 3]]}]), "tracts[0].points[2][1]", "not a finite number"),
         (document(tracts=[{"points": LINE, "weight": 0}]), "tracts[0].weight", "0 is not a positive number"),
+        (document(tracts=[{"points": LINE, "weight": 1e-7}]), "tracts[0].weight", "the weight is 1e-07"),
+        (document(tracts=[{"points": LINE, "weight": 2e12}]), "tracts[0].weight", "the weight is 2e+12"),
+        (document(boundary=[{"loop": 0, "rule": "free", "weight": 1e-7}]), "boundary[0].weight", "1e-07"),
         (document(tracts=[{"points": LINE, "name": 3}]), "tracts[0].name", "3 is not text"),
         (document(boundary=[{"loop": 0}]), "boundary[0]", "'rule' is missing"),
         (document(boundary=[{"loop": 0, "rule": "along"}]), "boundary[0].rule", "'along' is not 'free' or"),
@@ -177,9 +180,11 @@ def test_bad_tracts_and_conditions():
     for bad in ([[0, 0, 0]], [[0, 0], [1, 1]], [[0, 0, 0], [1, math.nan, 0]], "ab", [[1, 2, 3], [4]]):
         with pytest.raises(InvalidOption, match="'roof'"):
             Tract(bad, name="roof")  # type: ignore[arg-type]
-    for weight in (0, -1, math.nan, "1", None, True):
-        with pytest.raises(InvalidOption, match="weight"):
+    for weight in (0, -1, math.nan, 0.999e-6, 1.001e12, -math.inf, "1", None, True):
+        with pytest.raises((InvalidOption, TypeError), match="weight"):
             Tract(np.eye(3), weight=weight)  # type: ignore[arg-type]
+        with pytest.raises((InvalidOption, TypeError), match="loop 'valve'"):
+            BoundaryCondition("valve", "parallel", weight)  # type: ignore[arg-type]
     with pytest.raises(InvalidOption, match="free, parallel, perpendicular"):
         BoundaryCondition(0, "along")  # type: ignore[arg-type]
     for point in (np.array([1.0, 2]), "xyz", [[1], [2, 3]], [0, math.inf, 0]):

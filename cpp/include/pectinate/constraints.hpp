@@ -15,14 +15,18 @@ namespace pectinate {
 
 /// A weight that means: exactly.
 inline constexpr double hard = std::numeric_limits<double>::infinity();
+/// Other weights are from `least_weight` to `greatest_weight`: below, rounding tells a field's direction where nothing
+/// else acts; above, a weight spoils the equations of its neighbours, which `hard` does not.
+inline constexpr double least_weight = 1e-6, greatest_weight = 1e12;
 
 /// A fibre tract as drawn: a polyline in space near the surface (paper section 2.3). Its sense means nothing.
 struct Tract {
   std::string name;          ///< for messages; may be empty
   std::vector<Vec3> points;  ///< at least two; the first again at the end closes it
-  /// `hard`, or the factor of |phi - exp(2 i theta)|^2 / 2 in the energy, per triangle crossed: 1 pulls about as much
-  /// as one neighbouring triangle.
+  /// `hard`, or the factor of |phi - exp(2 i theta)|^2 / 2 in the energy, per triangle crossed, in
+  /// [`least_weight`, `greatest_weight`]: 1 pulls about as much as one neighbouring triangle.
   double weight = hard;
+  std::optional<std::int32_t> number = {};  ///< for messages; by default its index among those given
 };
 
 enum class BoundaryRule : std::uint8_t { free, parallel, perpendicular };
@@ -31,7 +35,7 @@ enum class BoundaryRule : std::uint8_t { free, parallel, perpendicular };
 struct BoundaryCondition {
   std::int32_t loop;  ///< index into `mesh.boundary_loops()`
   BoundaryRule rule;
-  double weight = hard;
+  double weight = hard;  ///< as of a tract
 };
 
 struct ConstraintOptions {
@@ -57,7 +61,7 @@ struct ProjectedTract {
 struct TriangleConstraint {
   std::int32_t triangle;  ///< of the mesh
   Vec3 direction;         ///< unit, in the triangle's plane; a line without a sign
-  double weight;          ///< `hard`, or the sum of the weights of all that ask for it
+  double weight;          ///< `hard`, or the sum of the weights of all that ask for it, at most `greatest_weight`
   std::int32_t tract;     ///< index of the first tract that asks for it, -1 for a boundary condition
 };
 
@@ -105,7 +109,7 @@ std::int32_t nearest_boundary_loop(const SurfaceMesh& mesh, const Vec3& point);
 ///
 /// Throws InvalidOption, naming the tract or the condition, for: fewer than two distinct points; a point that is not
 /// finite or too far away; consecutive points on different components; a loop that does not exist or is given twice;
-/// a weight that is not positive; an option out of its range.
+/// a weight out of its range; an option out of its range.
 Constraints make_constraints(const SurfaceMesh& mesh, std::span<const Tract> tracts,
                              std::span<const BoundaryCondition> boundary, const ConstraintOptions& options = {});
 

@@ -10,8 +10,9 @@
 namespace pectinate {
 
 struct SmoothingOptions {
-  /// The size of what is smoothed away, in the unit of the mesh, positive: fibres are compared with those around them
-  /// under a weight that falls off like a Gaussian of this standard deviation.
+  /// The size of what is smoothed away, in the unit of the mesh, from a millionth of the diagonal of its bounding box
+  /// to ten of them: fibres are compared with those around them under a weight that falls off like a Gaussian of this
+  /// standard deviation.
   double length = 1.5;
   /// A fibre that differs by more than this from those around it is replaced; radians in (0, pi/2].
   double outlier_angle = 0.2967059728390360;  // 17 degrees
@@ -36,8 +37,9 @@ struct Smoothing {
 /// So a field that is smooth already hardly changes, and most fibres of a noisy one move little.
 ///
 /// `barriers` is empty, or holds one label per mesh triangle: nothing is exchanged between triangles of different
-/// label. Signs mean nothing, in or out. Throws InvalidOption for an option out of its range and a wrong count of
-/// labels, InvalidField for the field of another mesh.
+/// label. Signs mean nothing, in or out. Resets the C library's rand() as `FieldInterpolator` does. Throws
+/// InvalidOption for an option out of its range and a wrong count of labels, InvalidField for the field of another
+/// mesh.
 Smoothing smooth(const SurfaceMesh& mesh, const OrientationField& field, const SmoothingOptions& options = {},
                  std::span<const std::int32_t> barriers = {});
 

@@ -45,18 +45,17 @@ class AngleOpener {
   /// Of the triangles about a vertex, were it elsewhere; negative where one of them would face inwards.
   double smallest_angle(std::int32_t vertex, const Vector& position) const {
     const Vector outwards = surface_.function(position).gradient;
-    double least = std::numbers::pi;
+    double largest_cosine = -1;
     for (const Triangle& triangle : stars_[vertex]) {
       std::array<Vector, 3> corners;
       for (int k = 0; k < 3; ++k) corners[k] = triangle[k] == vertex ? position : vertices_[triangle[k]];
       for (int k = 0; k < 3; ++k) {
         const Vector a = corners[(k + 1) % 3] - corners[k], b = corners[(k + 2) % 3] - corners[k];
-        const Vector normal = a.cross(b);
-        if (normal.dot(outwards) <= 0) return -1;
-        least = std::min(least, std::atan2(normal.norm(), a.dot(b)));
+        if (a.cross(b).dot(outwards) <= 0) return -1;
+        largest_cosine = std::max(largest_cosine, a.dot(b) / std::sqrt(a.squaredNorm() * b.squaredNorm()));
       }
     }
-    return least;
+    return std::acos(std::min(largest_cosine, 1.0));
   }
 
   void widen(std::int32_t vertex, double angle) {

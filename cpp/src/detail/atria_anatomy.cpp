@@ -13,11 +13,11 @@ namespace pectinate::detail {
 
 namespace {
 
-constexpr double vestibule_fillet = 12, septum_fillet = 6;
+constexpr double vestibule_fillet = 12, septum_fillet = 5;
 
 /// Both atria are flat on either side of this plane; the fossa ovalis is a hole through both walls.
 struct Septum {
-  Vector centre{0, 1.5, -1};  ///< of the fossa ovalis, between the walls
+  Vector centre{-3.4, 1.5, -0.5};  ///< of the fossa ovalis, between the walls
   Vector to_right = Vector(-0.74, -0.67, 0).normalized();
   double gap = 2;
 
@@ -89,7 +89,7 @@ Chamber make_left_chamber() {
                   septum.left_side(), "mitral_valve");
   builder.add(make_sleeve("left_superior_pulmonary_vein", {22, 14, 10}, {40.5, 22.5, 22}, 6.5), 9);
   builder.add(make_sleeve("left_inferior_pulmonary_vein", {22, 16, -4}, {40.5, 30, -7.5}, 6), 9);
-  builder.add(make_sleeve("right_superior_pulmonary_vein", {-2, 14, 11}, {-21, 22.5, 19}, 6.5), 9);
+  builder.add(make_sleeve("right_superior_pulmonary_vein", {-1, 15, 11}, {-21, 22.5, 19}, 6.5), 9);
   builder.add(make_sleeve("right_inferior_pulmonary_vein", {-2, 16, -4}, {-20, 30, -8.5}, 6), 9);
   const BentCone appendage({Vector(24, 0, 9), Vector(36, -30, 8), 8, 4.5}, Vector(1, -0.35, 0.25));
   builder.add({"left_atrial_appendage", [=](const Vector& point) { return appendage.sample(point); }}, 6,
@@ -100,7 +100,7 @@ Chamber make_left_chamber() {
 
 Chamber make_right_chamber() {
   const Septum septum;
-  Builder builder({Vector(-19, -9, -2), Vector(20, 19, 26)}, {Vector(-17, -11, -7), Vector(-5, -24, -18), 20, 19.5},
+  Builder builder({Vector(-17.5, -7.5, -2), Vector(20, 19, 26)}, {Vector(-17, -11, -7), Vector(-5, -24, -18), 20, 19.5},
                   septum.right_side(), "tricuspid_valve");
   builder.add(make_sleeve("superior_vena_cava", {-24, -5, 14}, {-25, -3, 40}, 9), 10);
   builder.add(make_sleeve("inferior_vena_cava", {-23, 0, -18}, {-24, 8, -37}, 11), 10);
@@ -122,7 +122,7 @@ Chamber make_bachmann_bundle() {
     return offset(smooth_union(left(point), right(point), groove_fillet), height);
   };
   const Band band =
-      lay_band(above, {{-31, -17, 21}, {-18, -15, 22}, {-4, -8, 18}, {8, -8, 14}, {20, -10, 13}, {28, -6, 16}},
+      lay_band(above, {{-32, -20, 19}, {-19, -19, 23}, {-5, -10, 18}, {8, -9, 15}, {20, -8, 16}, {31, -5, 18}},
                {4, 5.5, 5.5, 5.5, 5, 3.5});
   Chamber bundle{{{"bachmann_bundle", above}}, above, {}, widen(band.bounds, 4)};
   const auto outside = [band](const Vector& point) { return sample(band, point); };

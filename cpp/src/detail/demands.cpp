@@ -43,7 +43,7 @@ Demand average(std::span<const Demand> kept) {
   }
   const double resultant = std::abs(result.phase);
   result.phase = resultant > least_resultant * total ? result.phase / resultant : first->phase;
-  result.weight = any_hard ? hard : total;
+  result.weight = any_hard ? hard : std::min(total, greatest_weight);
   result.tract = first->tract;
   return result;
 }

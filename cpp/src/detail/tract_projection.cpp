@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "detail/mesh_geometry.hpp"
+#include "detail/number_text.hpp"
 #include "detail/surface_curve.hpp"
 #include "pectinate/errors.hpp"
 
@@ -111,8 +112,8 @@ std::vector<SurfacePoint> nearest_points(const TriangleTree& tree, const Tract& 
       distance = nearest.back().distance;
     }
     if (distance <= limit) continue;
-    throw InvalidOption(label + ": point " + std::to_string(i) + " is " + std::to_string(distance) +
-                        " away from the surface, but may be " + std::to_string(limit) +
+    throw InvalidOption(label + ": point " + std::to_string(i) + " is " + number_text(distance) +
+                        " away from the surface, but may be " + number_text(limit) +
                         "; check its unit and its place, or allow a greater maximum_distance");
   }
   return nearest;
@@ -121,7 +122,7 @@ std::vector<SurfacePoint> nearest_points(const TriangleTree& tree, const Tract& 
 }  // namespace
 
 std::string tract_label(std::size_t index, const Tract& tract) {
-  const std::string label = "tract " + std::to_string(index);
+  const std::string label = "tract " + (tract.number ? std::to_string(*tract.number) : std::to_string(index));
   return tract.name.empty() ? label : label + " \"" + tract.name + "\"";
 }
 

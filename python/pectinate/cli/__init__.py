@@ -1,4 +1,4 @@
-"""The command line: `pectinate place`, `interpolate`, `smooth`, `compare`, `parameterize`, `info` and `demo`."""
+"""The command line: `pectinate place`, `view`, `interpolate`, `smooth`, `compare`, `parameterize`, `info`, `demo`."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from pectinate.cli.arguments import make_parser
 from pectinate.cli.files import OutputError
 from pectinate.cli.shared_arguments import UsageError
+from pectinate.cli.wording import in_flags
 from pectinate.errors import Error, InvalidField, InvalidFile, InvalidMesh, InvalidOption
 
 __all__ = ["ExitCode", "main"]
@@ -70,6 +71,8 @@ def _message(error: BaseException) -> str:
             return "interrupted"
         case MemoryError():
             return "not enough memory"
+        case InvalidOption() | InvalidField():
+            return in_flags(" ".join(str(error).split()))
         case UsageError() | OutputError() | Error() | OSError():
             return " ".join(str(error).split())
         case _:

@@ -8,14 +8,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pectinate
-from pectinate.cli import commands
+from pectinate.cli import commands, view_command
 from pectinate.cli.field_arguments import add_field_commands
 from pectinate.cli.shared_arguments import (
     EXIT_CODES,
     Parser,
     add_common,
+    add_field,
     add_input,
     add_tract_names,
+    add_units,
     add_views,
     degrees,
     seed,
@@ -40,6 +42,7 @@ def make_parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"pectinate {pectinate.__version__}")
     subparsers = parser.add_subparsers(metavar="COMMAND", required=True)
     _add_place(subparsers)
+    _add_view(subparsers)
     _add_info(subparsers)
     add_field_commands(subparsers)
     _add_demo(subparsers)
@@ -54,6 +57,37 @@ def _add_place(subparsers: argparse._SubParsersAction[Parser]) -> None:
     add_input(parser)
     _add_placement(parser)
     _add_outputs(parser)
+    add_common(parser)
+
+
+def _add_view(subparsers: argparse._SubParsersAction[Parser]) -> None:
+    parser = subparsers.add_parser(
+        "view",
+        help="turn surfaces and their streamlines in the browser",
+        description="Show surfaces with their streamlines on one interactive page, which needs no network.",
+        epilog=EXIT_CODES,
+    )
+    parser.set_defaults(run=view_command.view)
+    parser.add_argument(
+        "meshes", metavar="MESH", type=Path, nargs="+", help="surfaces, as for place; without fibres no streamlines"
+    )
+    add_units(parser)
+    add_field(parser)
+    _add_placement(parser)
+    group = parser.add_argument_group("page")
+    group.add_argument("--out", type=Path, metavar="FILE", help=".html; by default the page opens in the browser")
+    group.add_argument("--title", metavar="TEXT", help="above the controls")
+    group.add_argument(
+        "--values",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help=".npy or .dat: a number per triangle or vertex, shown in colours; may be repeated",
+    )
+    group.add_argument("--tracts", type=Path, metavar="FILE", help="file of tracts, drawn as black lines")
+    add_views(group)
+    _add_tubes(group)
     add_common(parser)
 
 
@@ -102,7 +136,7 @@ def _add_placement(parser: argparse.ArgumentParser) -> None:
     add("--threads", "thread_count", whole, "N", "the result does not depend on it")
     group.add_argument(
         "--abrupt-turn-angle",
-        type=degrees,
+        type=degrees(180),
         metavar="DEGREES",
         help="a streamline ends where the field turns by more between two triangles "
         f"(default: {math.degrees(DEFAULTS['abrupt_turn_angle']):g}; 180: never)",
@@ -118,13 +152,17 @@ def _add_outputs(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="FILE",
-        help=".npz or .vtp for streamlines, .ply, .obj or .glb for their tubes; may be repeated",
+        help=".npz or .vtp for streamlines, .ply, .obj or .glb for their tubes, .html for a page; may be repeated",
     )
     group.add_argument(
         "--tubes", type=Path, action="append", default=[], metavar="FILE", help=".ply, .obj or .glb; may be repeated"
     )
     group.add_argument("--figure", type=Path, metavar="FILE", help="picture of surface and tubes, such as f.png")
     add_views(group)
+    _add_tubes(group)
+    group.add_argument("--tube-sides", dest="side_count", type=whole, metavar="N", help="3 to 12")
+
+
+def _add_tubes(group: argparse._ActionsContainer) -> None:
     group.add_argument("--tube-radius", type=float, metavar="MM", help="by default in proportion to the separation")
     group.add_argument("--taper-length", type=float, metavar="MM", help="over which tubes grow thin at their ends")
-    group.add_argument("--tube-sides", dest="side_count", type=whole, metavar="N", help="3 to 12")

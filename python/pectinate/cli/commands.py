@@ -23,12 +23,14 @@ from pectinate.datasets import demo_atrium
 from pectinate.errors import InvalidField
 from pectinate.model import Model
 from pectinate.placement import DEFAULTS, Placement
+from pectinate.viewer.page import SUFFIXES as PAGE_SUFFIXES
 
 _TUBE_SUFFIXES = frozenset({".ply", ".obj", ".glb"})
-_SUFFIXES = frozenset({".npz", ".vtp"}) | _TUBE_SUFFIXES
+_SUFFIXES = frozenset({".npz", ".vtp", *PAGE_SUFFIXES}) | _TUBE_SUFFIXES
 # The keywords of the library by argument, where they are given.
 _TUBE_OPTIONS = {"tube_radius": "radius", "taper_length": "taper_length", "side_count": "side_count"}
 _FIGURE_OPTIONS = {name: name for name in ("views", "tube_radius", "taper_length", "side_count")}
+_PAGE_OPTIONS = {name: name for name in ("views", "tube_radius", "taper_length")}
 
 
 def place(arguments: argparse.Namespace) -> None:
@@ -42,7 +44,7 @@ def place(arguments: argparse.Namespace) -> None:
 
 def info(arguments: argparse.Namespace) -> None:
     """Describe the surface and the field of a file."""
-    summary = with_loop_names(load_surface(arguments), arguments).summary()
+    summary = with_loop_names(load_surface(arguments), arguments.tracts).summary()
     if arguments.json:
         report.print_json(summary)
     elif not arguments.quiet:
@@ -94,12 +96,16 @@ def _write(placement: Placement, arguments: argparse.Namespace) -> None:
     """Save and draw what was asked for."""
     with writing():
         for path in _saved_files(arguments):
-            tubes = path.suffix.lower() in _TUBE_SUFFIXES
-            placement.save(path, **(given(arguments, _TUBE_OPTIONS) if tubes else {}))
+            placement.save(path, **given(arguments, _save_options(path)))
         if arguments.figure is not None:
             with ProgressBar("drawing", enabled=not arguments.quiet) as bar:
                 bar(0)
                 placement.figure(arguments.figure, **given(arguments, _FIGURE_OPTIONS))
+
+
+def _save_options(path: Path) -> dict[str, str]:
+    suffix = path.suffix.lower()
+    return _PAGE_OPTIONS if suffix in PAGE_SUFFIXES else _TUBE_OPTIONS if suffix in _TUBE_SUFFIXES else {}
 
 
 def _check_outputs(arguments: argparse.Namespace) -> None:

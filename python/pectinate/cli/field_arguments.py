@@ -45,7 +45,7 @@ def _add_interpolate(subparsers: argparse._SubParsersAction[Parser]) -> None:
     _add_frame(group)
     group.add_argument("--maximum-distance", type=float, metavar="MM", help="of tract points from the surface")
     group.add_argument(
-        "--conflict-angle", type=degrees, metavar="DEGREES", help="tracts that differ by more are in conflict"
+        "--conflict-angle", type=degrees(90), metavar="DEGREES", help="tracts that differ by more are in conflict"
     )
     _add_outputs(parser)
     add_common(parser)
@@ -71,7 +71,10 @@ def _add_smooth(subparsers: argparse._SubParsersAction[Parser]) -> None:
     group.add_argument("--length", type=float, metavar="MM", help="over which fibres are brought to agree")
     group.add_argument("--barriers", metavar="KIND", help="tags: nothing is exchanged between regions; none (default)")
     group.add_argument(
-        "--outlier-angle", type=degrees, metavar="DEGREES", help="fibres farther from those around them are replaced"
+        "--outlier-angle",
+        type=degrees(90),
+        metavar="DEGREES",
+        help="fibres that differ by more are replaced",
     )
     group.add_argument("--fill-missing", action="store_true", help="give a direction to triangles that have none too")
     _add_outputs(parser)
@@ -87,9 +90,19 @@ def _add_compare(subparsers: argparse._SubParsersAction[Parser]) -> None:
     add_units(parser)
     group = parser.add_argument_group("comparison")
     group.add_argument("--how", metavar="HOW", help=f"{', '.join(HOW)}: on the same triangles, or how to carry fields")
-    group.add_argument("--maximum-distance", type=float, metavar="MM", help="farther triangles are left out")
+    group.add_argument("--maximum-distance", type=float, metavar="MM", help="of nearest: the farther are left out")
+    group = parser.add_argument_group("comparison by disks")
     for which in ("first", "second"):
         group.add_argument(f"--outer-{which}", type=loop, metavar="LOOP", help=f"outer loop of the disk: {_LOOP}")
+    group.add_argument(
+        "--tracts",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="file of tracts that names boundary loops, of both surfaces or, given twice, of each; loops of the same "
+        "name correspond",
+    )
     group.add_argument(
         "--pair",
         dest="pairs",

@@ -20,6 +20,7 @@ from pectinate.cli.files import (
     writing,
 )
 from pectinate.cli.progress import ProgressBar
+from pectinate.cli.shared_arguments import UsageError
 from pectinate.comparison import Comparison
 from pectinate.interpolated_field import InterpolatedField
 from pectinate.io import opencarp, vtk
@@ -51,7 +52,7 @@ def parameterize(arguments: argparse.Namespace) -> None:
     """Map the surface of a file onto the unit disk, and draw it."""
     arguments.outputs = []
     _check_outputs(arguments)
-    model = with_loop_names(load_surface(arguments, field=None), arguments)
+    model = with_loop_names(load_surface(arguments, field=None), arguments.tracts)
     started = time.perf_counter()
     result = pectinate.parameterize(model, **given(arguments, _FRAME))
     seconds = time.perf_counter() - started
@@ -80,7 +81,11 @@ def smooth(arguments: argparse.Namespace) -> None:
 def compare(arguments: argparse.Namespace) -> None:
     """Compare the fields of two files, save and draw the angles."""
     _check_outputs(arguments)
-    models = [load_surface(arguments, path) for path in (arguments.first, arguments.second)]
+    tracts = _tracts_of_two(arguments)
+    models = [
+        with_loop_names(load_surface(arguments, path), names)
+        for path, names in zip((arguments.first, arguments.second), tracts, strict=True)
+    ]
     outer_loops = (arguments.outer_first, arguments.outer_second)
     result = pectinate.compare(*models, outer_loops=outer_loops, **given(arguments, _COMPARISON))
     written = _save(result, arguments)
@@ -91,11 +96,31 @@ def compare(arguments: argparse.Namespace) -> None:
     _print(arguments, field_report.comparison_rows(found), {"comparison": found}, written)
 
 
+def _tracts_of_two(arguments: argparse.Namespace) -> Sequence[Path | None]:
+    """The files that name the loops of the first and of the second surface."""
+    files = arguments.tracts
+    if not files:
+        return None, None
+    if arguments.how != "disks":
+        raise UsageError("--tracts names loops, which --how disks alone compares by; leave it out")
+    if len(files) > 2:  # noqa: PLR2004
+        raise UsageError(f"--tracts is given {len(files)} times; give one for both surfaces, or one for each")
+    return files[0], files[-1]
+
+
 def _check_outputs(arguments: argparse.Namespace) -> None:
-    """Refuse what cannot be written before any long work."""
+    """Refuse what cannot be written, and what is said of files that are not asked for, before any long work."""
+    _check_serves(arguments, "--out", arguments.outputs, {"second_vectors": "--second", "per_vertex": "--per-vertex"})
+    _check_serves(arguments, "--figure", arguments.figure, {"views": "--views", "separation_distance": "--separation"})
     check_suffixes("--out", arguments.outputs, _SUFFIXES)
     check_figure(arguments)
     check_folders(arguments.outputs if arguments.figure is None else [*arguments.outputs, arguments.figure])
+
+
+def _check_serves(arguments: argparse.Namespace, output: str, wanted: object, flags: dict[str, str]) -> None:
+    for name, flag in flags.items():
+        if getattr(arguments, name, None) not in (None, False) and not wanted:
+            raise UsageError(f"{flag} serves {output} alone, which is not given; add it or leave {flag} out")
 
 
 def _save(result: InterpolatedField | SmoothedField | Comparison, arguments: argparse.Namespace) -> list[Path]:

@@ -36,9 +36,9 @@ def load_surface(arguments: argparse.Namespace, path: Path | None = None, **opti
         raise InvalidFile(f"{path}: {error.strerror or error}") from error
 
 
-def with_loop_names(model: Model, arguments: argparse.Namespace) -> Model:
-    """Name the loops as the file of `--tracts` does."""
-    return model if arguments.tracts is None else model.with_loop_points(pectinate.read_tracts(arguments.tracts).loops)
+def with_loop_names(model: Model, tracts: Path | None) -> Model:
+    """Name the loops as a file of tracts does."""
+    return model if tracts is None else model.with_loop_points(pectinate.read_tracts(tracts).loops)
 
 
 def check_figure(arguments: argparse.Namespace) -> None:
@@ -46,6 +46,11 @@ def check_figure(arguments: argparse.Namespace) -> None:
     if arguments.figure is not None:
         kinds = Image.registered_extensions()
         check_suffixes("--figure", [arguments.figure], {suffix for suffix in kinds if kinds[suffix] in Image.SAVE})
+    check_views(arguments)
+
+
+def check_views(arguments: argparse.Namespace) -> None:
+    """Refuse an unknown view."""
     for view in getattr(arguments, "views", None) or ():
         resolve_view(view, np.eye(3))
 

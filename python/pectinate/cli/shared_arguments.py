@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import NoReturn
 
@@ -35,6 +36,11 @@ def add_surface(parser: argparse.ArgumentParser) -> None:
 def add_input(parser: argparse.ArgumentParser) -> None:
     """The file of a surface and its field."""
     add_surface(parser)
+    add_field(parser)
+
+
+def add_field(parser: argparse.ArgumentParser) -> None:
+    """Where the field is."""
     parser.add_argument("--field", metavar="NAME|FILE", help="name of the array of fibres, or a file that holds them")
 
 
@@ -63,9 +69,16 @@ def add_common(parser: argparse.ArgumentParser) -> None:
     group.add_argument("--debug", action="store_true", help="show where an error comes from")
 
 
-def degrees(text: str) -> float:
-    """Read degrees; the library has radians."""
-    return math.radians(float(text))
+def degrees(highest: int) -> Callable[[str], float]:
+    """Make a reader of angles above 0 and at most this many degrees; the library has radians."""
+
+    def angle(text: str) -> float:
+        number = float(text)
+        if not 0 < number <= highest:
+            raise argparse.ArgumentTypeError(f"{text} is not above 0 and at most {highest} degrees")
+        return math.radians(number)
+
+    return angle
 
 
 def names(text: str) -> list[str]:

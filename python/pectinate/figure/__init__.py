@@ -3,6 +3,7 @@
 from pectinate.figure.disk import draw_disk
 from pectinate.figure.lines import line_tubes
 from pectinate.figure.picture import render_view
+from pectinate.figure.plots import draw_lengths, draw_spacing
 from pectinate.figure.shading import Style
 from pectinate.figure.shape import Layer
 from pectinate.figure.sheet import draw_sheet
@@ -16,7 +17,9 @@ __all__ = [
     "SurfaceValues",
     "View",
     "draw_disk",
+    "draw_lengths",
     "draw_sheet",
+    "draw_spacing",
     "line_tubes",
     "principal_views",
     "render_view",

@@ -18,9 +18,10 @@ from pectinate.figure.views import View, resolve_view
 MARGIN = 0.03
 """Least share of a picture's width and height that stays free at each side."""
 
+FOLD_SIZE = 0.035
+"""The folds that are darkened: those about this share of the surface's diagonal wide and half as deep."""
+
 _LARGEST_SUPERSAMPLING = 8
-# The folds that are darkened: those about this share of the drawing's diagonal wide and half as deep.
-_FOLD_SIZE = 0.035
 
 
 @dataclass(frozen=True)
@@ -143,7 +144,7 @@ def draw_frame(canvas: Canvas, drawing: Drawing, frame: Frame, supersampling: in
     seen = patches(drawing, frame.view, frame.centre, style)
     color, depth = canvas.draw(seen, fine_size, frame.mm_per_pixel / supersampling)
     lit = color.astype(np.float32) / np.float32(255)
-    fold_size = _FOLD_SIZE * float(np.linalg.norm(np.ptp(drawing.surface.vertices, axis=0)))
+    fold_size = FOLD_SIZE * float(np.linalg.norm(np.ptp(drawing.surface.vertices, axis=0)))
     darkness = style.fold_darkness * (1.0 if drawing.colors is None else VALUE_SHADE)
     if darkness > 0 and fold_size > 0:
         radius = min(max(1, round(0.5 * fold_size / frame.mm_per_pixel)), max(frame.size))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -122,6 +123,18 @@ def shaded(color: ArrayLike, brightness: NDArray[np.float64], highlight: ArrayLi
     """Display RGB (V, 3) of vertices of one colour (3,) or one each (V, 3)."""
     lit = np.asarray(color, dtype=np.float64) * brightness[:, None] + np.atleast_1d(highlight)[:, None]
     return np.asarray(np.clip(lit, 0.0, 1.0))
+
+
+def light_settings() -> dict[str, Any]:
+    """The numbers behind `light`, `value_light` and `gloss`, for other drawing programs; ready for JSON."""
+    return {
+        "lights": [{"direction": list(direction), "strength": strength} for direction, strength in _LIGHTS],
+        "sky": _SKY,
+        "ground": _GROUND,
+        "gloss_direction": list(_GLOSS_DIRECTION),
+        "gloss_exponent": _GLOSS_EXPONENT,
+        "value_shade": VALUE_SHADE,
+    }
 
 
 def fold_shadow(depth: NDArray[np.float32], block: int, radius: int, reach: float) -> NDArray[np.float32]:

@@ -91,14 +91,14 @@ def corner_colors(
         Matplotlib is not installed.
     """
     given = surface_values if isinstance(surface_values, SurfaceValues) else SurfaceValues(surface_values)
-    values = _per_corner(given.values, triangles, vertex_count)
+    values = corner_values(given.values, triangles, vertex_count)
     finite = np.isfinite(values)
-    low, high = given.value_range or _range(values[finite])
+    low, high = given.value_range or range_of(values[finite])
     scale = ColorScale(given.colormap, float(low), float(high))
     return CornerColors(scale.colors(values, missing), scale, given.label, not finite.all())
 
 
-def _per_corner(values: ArrayLike, triangles: NDArray[np.int64], vertex_count: int) -> NDArray[np.float64]:
+def corner_values(values: ArrayLike, triangles: NDArray[np.int64], vertex_count: int) -> NDArray[np.float64]:
     """Values (T, 3) at the corners of triangles; NaN at all three of a triangle where one is not finite."""
     try:
         array = np.asarray(values, dtype=np.float64)
@@ -117,7 +117,7 @@ def _per_corner(values: ArrayLike, triangles: NDArray[np.int64], vertex_count: i
     return corners
 
 
-def _range(finite_values: NDArray[np.float64]) -> tuple[float, float]:
+def range_of(finite_values: NDArray[np.float64]) -> tuple[float, float]:
     """Least and greatest value; one more than the least where all are the same, 0 and 1 where there is none."""
     if not len(finite_values):
         return 0.0, 1.0

@@ -14,32 +14,36 @@ The `.npz` file holds, without pickles:
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from pectinate._core import StopReason, SurfaceMesh
 from pectinate.errors import InvalidFile, InvalidOption
+from pectinate.io.gltf import make_scene, write_glb
+from pectinate.io.lines import to_polylines
 from pectinate.io.trimesh_io import write_trimesh
-from pectinate.io.vtk import write_streamlines_vtp
+from pectinate.io.vtk_library import save_dataset
+from pectinate.viewer.page import SUFFIXES as PAGE_SUFFIXES
 
 if TYPE_CHECKING:
     from pectinate.placement import Placement
 
 
-def save(placement: Placement, path: Path, **tube_options: Any) -> None:
+def save(placement: Placement, path: Path, **options: Any) -> None:
     """Write a placement in the format that the suffix names; see `Placement.save`."""
-    writers: dict[str, Callable[..., None]] = {".npz": _save_npz, ".vtp": _save_vtp}
-    writers |= dict.fromkeys((".ply", ".obj", ".glb"), _save_tubes)
+    writers: dict[str, Callable[..., None]] = {".npz": _save_npz, ".vtp": _save_vtp, ".glb": _save_glb}
+    writers |= dict.fromkeys((".ply", ".obj"), _save_tubes)
+    writers |= dict.fromkeys(PAGE_SUFFIXES, _save_page)
     suffix = path.suffix.lower()
     if suffix not in writers:
         raise InvalidOption(f"{path}: streamlines cannot be saved as {suffix!r}; use one of {', '.join(writers)}")
-    if tube_options and writers[suffix] is not _save_tubes:
-        raise InvalidOption(f"{path}: {', '.join(tube_options)} is for tubes: .ply, .obj or .glb")
-    writers[suffix](placement, path, **tube_options)
+    if options and (suffix == ".npz" or (suffix == ".vtp") != ("values" in options)):
+        raise InvalidOption(f"{path}: {', '.join(options)} is not for files of this kind")
+    writers[suffix](placement, path, **options)
 
 
 def _save_npz(placement: Placement, path: Path) -> None:
@@ -74,21 +78,18 @@ def _joined_triangles(mesh: SurfaceMesh) -> NDArray[np.int32]:
     return first[group].astype(np.int32)[mesh.triangles]
 
 
-def _save_vtp(placement: Placement, path: Path) -> None:
-    write_streamlines_vtp(
-        path,
-        placement.points,
-        placement.offsets,
-        cell_data={
-            "line": np.arange(len(placement)),
-            "length": placement.lengths,
-            "stop_reason_first": placement.stop_reasons[:, 0],
-            "stop_reason_last": placement.stop_reasons[:, 1],
-        },
-        point_data={"triangle": placement.point_triangles, "barycentric": placement.barycentric},
-    )
+def _save_vtp(placement: Placement, path: Path, *, values: Mapping[str, ArrayLike] | None = None) -> None:
+    save_dataset(to_polylines(placement, values), path)
 
 
 def _save_tubes(placement: Placement, path: Path, **tube_options: Any) -> None:
     tubes = placement.tubes(**tube_options)
     write_trimesh(path, tubes.vertices, tubes.triangles)
+
+
+def _save_glb(placement: Placement, path: Path, **tube_options: Any) -> None:
+    write_glb(path, make_scene(placement.mesh, placement.tubes(**tube_options)))
+
+
+def _save_page(placement: Placement, path: Path, **page_options: Any) -> None:
+    placement.page(**page_options).save(path)

@@ -8,13 +8,13 @@
   "surface": {"source": ..., "vertices": ..., "triangles": ..., "area": ..., "bounding_box": ..., "checksum": ...},
   "loops": {"mitral valve": [x, y, z]},
   "boundary": [{"loop": "mitral valve", "rule": "parallel"}, {"loop": 2, "rule": "perpendicular", "weight": 5.0}],
-  "tracts": [{"name": "Bachmann's bundle", "points": [[x, y, z], [x, y, z]]}]
+  "tracts": [{"name": "Bachmann's bundle", "label": "1", "points": [[x, y, z], [x, y, z]]}]
 }
 ```
 
 Only `format` and `version` must be there. A loop is named by its index, its name in `loops`, or a point near it. A
-`weight` that is left out means: exactly. `surface` tells on which surface the tracts were drawn; they may be used on
-others.
+`weight` is from 1e-6 to 1e12; left out it means: exactly. `surface` tells on which surface the tracts were drawn; they
+may be used on others.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ import numpy as np
 
 from pectinate.io.json_place import Place, read_json
 from pectinate.io.text import write_lines
-from pectinate.tracts import RULES, BoundaryCondition, SurfaceIdentity, Tract, TractSet
+from pectinate.tracts import RULES, WEIGHT_RANGE, BoundaryCondition, SurfaceIdentity, Tract, TractSet
 
 FORMAT = "pectinate tracts"
 VERSION = 1
@@ -80,15 +80,16 @@ def write_tracts(tracts: TractSet, path: str | os.PathLike[str]) -> None:
 
 
 def _read_tract(place: Place) -> Tract:
-    keys = place.keys(("points",), ("name", "description", "weight"))
+    keys = place.keys(("points",), ("name", "description", "label", "weight"))
     points = [point.point() for point in keys["points"].items()]
     if len(points) < _LEAST_POINTS:
         raise keys["points"].error(f"{len(points)} points", "a tract has at least two")
     return Tract(
         points=np.array(points),
         name=keys["name"].text() if "name" in keys else "",
-        weight=keys["weight"].positive() if "weight" in keys else math.inf,
+        weight=_weight_at(keys["weight"]) if "weight" in keys else math.inf,
         description=keys["description"].text() if "description" in keys else "",
+        label=keys["label"].text() if "label" in keys else "",
     )
 
 
@@ -102,8 +103,15 @@ def _read_condition(place: Place) -> BoundaryCondition:
             which = loop.point()
         case _:
             which = loop.count("an index, a name in quotation marks or a point [x, y, z]")
-    weight = keys["weight"].positive() if "weight" in keys else math.inf
+    weight = _weight_at(keys["weight"]) if "weight" in keys else math.inf
     return BoundaryCondition(which, keys["rule"].one_of(RULES), weight)
+
+
+def _weight_at(place: Place) -> float:
+    weight, (least, greatest) = place.positive(), WEIGHT_RANGE
+    if not least <= weight <= greatest:
+        raise place.error(f"the weight is {weight:g}", f"give one from {least:g} to {greatest:g}, or none for exactly")
+    return weight
 
 
 def _read_identity(place: Place) -> SurfaceIdentity:
@@ -132,7 +140,7 @@ def _condition(condition: BoundaryCondition) -> dict[str, Any]:
 
 
 def _tract(tract: Tract) -> str:
-    head = {"name": tract.name, "description": tract.description} | _weight(tract.weight)
+    head = {"name": tract.name, "label": tract.label, "description": tract.description} | _weight(tract.weight)
     rows = [f"{_json(key)}: {_json(value)}" for key, value in head.items() if value != ""]
     rows.append(f'"points": {_block("[", [_json(point) for point in tract.points.tolist()], "]")}')
     return _block("{", rows, "}")

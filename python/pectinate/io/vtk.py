@@ -15,7 +15,14 @@ from pectinate.io.fields import field_arguments
 from pectinate.io.units import decide_unit, to_millimetres
 from pectinate.io.vtk_arrays import DatasetArrays
 from pectinate.io.vtk_cells import TRIANGLE, find_triangles
-from pectinate.io.vtk_library import SUFFIXES, import_pyvista, read_dataset, save_dataset
+from pectinate.io.vtk_library import (
+    SUFFIXES,
+    faces_of,
+    import_pyvista,
+    polyline_dataset,
+    read_dataset,
+    save_dataset,
+)
 from pectinate.model import SurfaceData
 
 __all__ = ["SUFFIXES", "is_pyvista", "read_vtk", "surface_from_pyvista", "write_streamlines_vtp", "write_vtk"]
@@ -104,7 +111,7 @@ def write_vtk(  # noqa: PLR0913
         It cannot be written.
     """
     pyvista = import_pyvista()
-    faces = np.column_stack([np.full(len(triangles), 3), triangles]).ravel()
+    faces = faces_of(triangles)
     if path.suffix.lower() == ".vtu":
         dataset = pyvista.UnstructuredGrid(faces, np.full(len(triangles), TRIANGLE, np.uint8), vertices)
     else:
@@ -145,15 +152,7 @@ def write_streamlines_vtp(
     InvalidFile
         It cannot be written.
     """
-    pyvista = import_pyvista()
-    offsets = np.asarray(offsets, dtype=np.int64)
-    dataset = pyvista.PolyData()
-    dataset.points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
-    dataset.lines = np.insert(np.arange(len(points)), offsets[:-1], np.diff(offsets))
-    for store, arrays in ((dataset.cell_data, cell_data), (dataset.point_data, point_data)):
-        for name, values in (arrays or {}).items():
-            store[name] = np.asarray(values)
-    save_dataset(dataset, Path(path))
+    save_dataset(polyline_dataset(points, offsets, cell_data, point_data), Path(path))
 
 
 def is_pyvista(source: object) -> bool:

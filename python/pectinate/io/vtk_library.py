@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import importlib
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from pectinate.errors import InvalidFile, MissingDependency
 
@@ -72,6 +75,44 @@ def save_dataset(dataset: Any, path: Path) -> None:
         dataset.save(str(path))
         if complaints():
             raise InvalidFile.at(path, f"cannot be written ({complaints()[0]})", "check the folder")
+
+
+def polyline_dataset(
+    points: NDArray[np.float64],
+    offsets: NDArray[np.int64],
+    cell_data: Mapping[str, ArrayLike] | None = None,
+    point_data: Mapping[str, ArrayLike] | None = None,
+) -> Any:
+    """Make a PyVista data set of polylines; parameters as of `write_streamlines_vtp`."""
+    offsets = np.asarray(offsets, dtype=np.int64)
+    dataset = import_pyvista().PolyData()
+    dataset.points = np.asarray(points, dtype=np.float64).reshape(-1, 3)
+    dataset.lines = np.insert(np.arange(len(points)), offsets[:-1], np.diff(offsets))
+    for store, arrays in ((dataset.cell_data, cell_data), (dataset.point_data, point_data)):
+        for name, values in (arrays or {}).items():
+            if np.size(values):  # PyVista refuses empty arrays of vectors
+                store[name] = np.asarray(values)
+    return dataset
+
+
+def surface_dataset(
+    vertices: NDArray[np.float64],
+    triangles: NDArray[np.integer[Any]],
+    cell_data: Mapping[str, ArrayLike | None],
+    point_data: Mapping[str, ArrayLike],
+) -> Any:
+    """Make a PyVista data set of triangles with arrays per triangle, of which those that are None are left out."""
+    dataset = import_pyvista().PolyData(np.array(vertices), faces_of(triangles))
+    for store, arrays in ((dataset.cell_data, cell_data), (dataset.point_data, point_data)):
+        for name, values in arrays.items():
+            if values is not None:
+                store[name] = np.array(values)
+    return dataset
+
+
+def faces_of(triangles: NDArray[np.integer[Any]]) -> NDArray[np.integer[Any]]:
+    """Triangles as PyVista wants polygons: each with its number of corners before them."""
+    return np.insert(triangles, 0, 3, axis=1).ravel()
 
 
 def _make_reader(suffix: str) -> Any:

@@ -1,0 +1,122 @@
+// Tubes around lines. A vertex is its centre, a unit vector away from it and a thickness; the shader multiplies by the
+// radius, so that a slider can change it.
+
+const SIDE_COUNT = 8;
+// Where the rings of a round end lie, as shares of a quarter turn.
+const END_RINGS = [1, 2 / 3, 1 / 3, 0];
+
+function buildTubes(bytes, description) {
+  const points = unpackPoints(bytes, description);
+  const counts = unpack(bytes, description.counts);
+  const round = description.taper_length === 0;
+  const extraRings = round ? 2 * (END_RINGS.length - 1) : 0;
+  const rings = new Rings(points.length / 3 + extraRings * counts.length);
+  let first = 0;
+  for (const count of counts) {
+    addTube(rings, points.subarray(3 * first, 3 * (first + count)), description.taper_length);
+    first += count;
+  }
+  return rings.geometry();
+}
+
+// Rings of vertices, one after the other, each joined to the one before unless it begins a tube.
+class Rings {
+  constructor(count) {
+    this.centres = new Float32Array(3 * count * SIDE_COUNT);
+    this.offsets = new Int8Array(4 * count * SIDE_COUNT);
+    this.thicknesses = new Float32Array(count * SIDE_COUNT);
+    this.corners = new Uint32Array(6 * count * SIDE_COUNT);
+    this.vertexCount = this.cornerCount = 0;
+  }
+
+  // `lean` is the angle of the offsets towards the tangent: not 0 at round ends only.
+  add(centre, frame, thickness, lean, begins) {
+    const start = this.vertexCount;
+    const [across, along] = [Math.cos(lean), Math.sin(lean)];
+    for (let side = 0; side < SIDE_COUNT; side++) {
+      const angle = (2 * Math.PI * side) / SIDE_COUNT;
+      const [c, s] = [across * Math.cos(angle), across * Math.sin(angle)];
+      for (let axis = 0; axis < 3; axis++) {
+        const offset = c * frame.side[axis] + s * frame.other[axis] + along * frame.tangent[axis];
+        this.centres[3 * this.vertexCount + axis] = centre[axis];
+        this.offsets[4 * this.vertexCount + axis] = Math.round(127 * offset);
+      }
+      this.thicknesses[this.vertexCount++] = thickness;
+    }
+    if (!begins) this.join(start - SIDE_COUNT, start);
+  }
+
+  join(ring, next) {
+    for (let k = 0; k < SIDE_COUNT; k++) {
+      const l = (k + 1) % SIDE_COUNT;
+      this.corners.set([ring + k, ring + l, next + k, ring + l, next + l, next + k], this.cornerCount);
+      this.cornerCount += 6;
+    }
+  }
+
+  geometry() {
+    const geometry = new THREE.BufferGeometry();
+    geometry.setIndex(new THREE.BufferAttribute(this.corners.subarray(0, this.cornerCount), 1));
+    geometry.setAttribute('position', new THREE.BufferAttribute(this.centres, 3));
+    geometry.setAttribute('offset', new THREE.BufferAttribute(this.offsets, 4, true));
+    geometry.setAttribute('thickness', new THREE.BufferAttribute(this.thicknesses, 1));
+    return geometry;
+  }
+}
+
+function addTube(rings, points, taperLength) {
+  const count = points.length / 3;
+  const point = (i) => [points[3 * i], points[3 * i + 1], points[3 * i + 2]];
+  const arcs = [0];
+  for (let i = 1; i < count; i++) arcs.push(arcs[i - 1] + length(minus(point(i), point(i - 1))));
+  const total = arcs[count - 1];
+  const rise = (arc) => -Math.expm1(-arc / taperLength);
+  let side = null;
+  for (let i = 0; i < count; i++) {
+    const tangent = tangentAt(point, i, count);
+    side = acrossTo(tangent, side);
+    const frame = { tangent, side, other: cross(tangent, side) };
+    if (taperLength > 0) {
+      // Equation (3) of the paper.
+      rings.add(point(i), frame, rise(arcs[i]) * rise(total - arcs[i]), 0, i === 0);
+    } else {
+      for (const lean of leans(i, count)) rings.add(point(i), frame, 1, lean, i === 0 && lean === -0.5 * Math.PI);
+    }
+  }
+}
+
+function leans(i, count) {
+  const quarter = END_RINGS.map((share) => 0.5 * Math.PI * share);
+  if (i === 0) return quarter.map((lean) => -lean);
+  return i === count - 1 ? quarter.reverse() : [0];
+}
+
+function tangentAt(point, i, count) {
+  const arriving = unit(minus(point(i), point(Math.max(i - 1, 0))));
+  const leaving = unit(minus(point(Math.min(i + 1, count - 1)), point(i)));
+  const sum = arriving.map((x, axis) => x + leaving[axis]);
+  // A line that goes back the way it came has no direction between both.
+  if (length(sum) > 1e-6) return unit(sum);
+  return length(leaving) > 0 ? leaving : [1, 0, 0];
+}
+
+// A unit vector across the tangent, turned as little as can be from the one before.
+function acrossTo(tangent, previous) {
+  const withoutTangent = (vector) => {
+    const along = dot(vector, tangent);
+    return vector.map((x, axis) => x - along * tangent[axis]);
+  };
+  const turned = previous ? withoutTangent(previous) : [0, 0, 0];
+  if (length(turned) > 1e-6) return unit(turned);
+  const least = tangent.map(Math.abs).reduce((best, x, axis, all) => (x < all[best] ? axis : best), 0);
+  return unit(withoutTangent([0, 1, 2].map((axis) => (axis === least ? 1 : 0))));
+}
+
+const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+const minus = (a, b) => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+const length = (a) => Math.hypot(a[0], a[1], a[2]);
+const cross = (a, b) => [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+const unit = (a) => {
+  const norm = length(a) || 1;
+  return [a[0] / norm, a[1] / norm, a[2] / norm];
+};
