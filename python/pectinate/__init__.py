@@ -12,7 +12,9 @@ from importlib.metadata import version
 
 from pectinate import datasets, errors, viewer
 from pectinate._core import OrientationField, SurfaceMesh, Tubes
+from pectinate.atlas import CarriedTracts, atlas, carry_tracts
 from pectinate.comparison import Comparison, add_noise, compare
+from pectinate.correspondence import Correspondence, correspond
 from pectinate.interpolated_field import InterpolatedField
 from pectinate.interpolation import FieldEditor, interpolate
 from pectinate.io import load, save_surface
@@ -27,7 +29,9 @@ from pectinate.tracts import BoundaryCondition, SurfaceIdentity, Tract, TractSet
 
 __all__ = [
     "BoundaryCondition",
+    "CarriedTracts",
     "Comparison",
+    "Correspondence",
     "DiskMap",
     "FieldEditor",
     "InterpolatedField",
@@ -43,7 +47,10 @@ __all__ = [
     "TractSet",
     "Tubes",
     "add_noise",
+    "atlas",
+    "carry_tracts",
     "compare",
+    "correspond",
     "datasets",
     "errors",
     "find_loop",

@@ -1,0 +1,234 @@
+"""A first field for a bare patient surface: the fibre tracts of the built-in atria, carried over."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pectinate import _core
+from pectinate.correspondence import Correspondence, correspond, suggestions
+from pectinate.datasets import atrial_surface, atrial_tracts
+from pectinate.errors import InvalidOption
+from pectinate.interpolated_field import InterpolatedField
+from pectinate.interpolation import interpolate
+from pectinate.io import load
+from pectinate.io.loop_file import read_loops
+from pectinate.loops import find_loop, three_numbers
+from pectinate.model import Model
+from pectinate.tracts import BoundaryCondition, SurfaceIdentity, Tract, TractSet
+
+_FARTHEST = 0.1  # of the target's diagonal
+_SPACING = 3.0  # mm, of the carried tracts' points
+#: A point that may be named like a loop: the appendage's tip, by chamber.
+APPENDAGES = {"left_atrium": "left atrial appendage", "right_atrium": "right atrial appendage"}
+
+
+@dataclass(frozen=True, eq=False)
+class CarriedTracts:
+    """Tracts and conditions on another surface than the one they were drawn on.
+
+    Attributes
+    ----------
+    tracts
+        On the target, their points brought to its surface, at most 3 mm apart.
+    correspondence
+        How the surfaces were brought together.
+    left_out
+        Tracts and conditions that could not be carried, one sentence each.
+    """
+
+    tracts: TractSet
+    correspondence: Correspondence
+    left_out: tuple[str, ...]
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What to check, one sentence each."""
+        found = self.correspondence.report()
+        apart, source = found["distances"], self.correspondence.source.data.source
+        fit = (
+            f"the tracts are those of {source}, carried by {len(found['loops'])} loops and nearest points; it came to "
+            f"lie {apart['median']:.1f} mm from the surface in the median, at most {apart['greatest']:.1f}"
+        )
+        return (fit, *self.left_out)
+
+
+def carry_tracts(
+    tracts: TractSet,
+    source: Model,
+    target: Model,
+    *,
+    landmarks: ArrayLike | None = None,
+    maximum_distance: float | None = None,
+) -> CarriedTracts:
+    """Carry tracts and boundary conditions from one surface to another that has loops of the same names.
+
+    Parameters
+    ----------
+    tracts
+        Drawn on the source; the names of their loops are known to it, or are added.
+    source, target
+        Models with at least three loop names in common.
+    landmarks
+        As in `pectinate.correspond`.
+    maximum_distance
+        mm: tracts that end up farther from the target are left out; by default a tenth of its bounding box's diagonal.
+
+    Raises
+    ------
+    InvalidOption
+        As in `pectinate.correspond`; a distance that is not positive; a condition of a loop that the source does not
+        have, or a tract that does not lie on it.
+    """
+    limit = _FARTHEST * target.mesh.bounding_box_diagonal if maximum_distance is None else maximum_distance
+    if not limit > 0:
+        raise InvalidOption(f"maximum_distance is {maximum_distance}, but must be positive, mm")
+    source = source.with_loop_points(tracts.loops)
+    found = correspond(source, target, landmarks=landmarks)
+    conditions, missing = _conditions(tracts, found)
+    carried, lost = _carried(tracts.tracts, found, limit)
+    loops = {name: target.data.loop_points[name] for name in found.loops}
+    result = TractSet(carried, conditions, loops, SurfaceIdentity.of(target))
+    return CarriedTracts(result, found, (*missing, *lost))
+
+
+def atlas(
+    surface: Any,
+    loops: Mapping[str, ArrayLike] | str | os.PathLike[str],
+    *,
+    chamber: str | None = None,
+    layer: str = "epicardium",
+    maximum_distance: float | None = None,
+    **options: Any,
+) -> InterpolatedField:
+    """Give a bare atrial surface a first field: that of the tracts of the built-in atrium, carried over.
+
+    It is no measurement: fibres differ from heart to heart, and so may this field from those of the patient.
+
+    Parameters
+    ----------
+    surface
+        A `Model`, or anything that `pectinate.load` takes; a field that it has is replaced.
+    loops
+        For each opening that is named a point (3,), mm, near it, or a file of them (see `pectinate.io.loop_file`). The
+        names are those of `datasets.atrial_surface(chamber).loop_names`, at least three; openings that the surface does
+        not have are left away. The appendage's tip, `left atrial appendage` or `right atrial appendage`, may be named
+        too and helps.
+    chamber
+        `left_atrium` or `right_atrium`; by default the one that has all the names.
+    layer
+        `epicardium` or `endocardium`.
+    maximum_distance
+        As in `carry_tracts`.
+    options
+        Of `pectinate.interpolate`.
+
+    Returns
+    -------
+    InterpolatedField
+        Its notes say how well the surfaces came together, and what was left out.
+
+    Raises
+    ------
+    InvalidOption
+        A name that the chamber does not have, with those that it has; and as in `carry_tracts` and `interpolate`.
+    InvalidFile
+        The file of loops is missing or malformed.
+    InvalidMesh
+        The surface has no loops.
+    """
+    given = loops if isinstance(loops, Mapping) else read_loops(loops)
+    points = {name.replace("_", " "): three_numbers(at, f"the point of {name!r}") for name, at in given.items()}
+    chosen = _chamber(tuple(points)) if chamber is None else chamber
+    built_in = atrial_surface(chosen, layer=layer)
+    tip = points.pop(APPENDAGES.get(chosen, ""), None)
+    _check_names(tuple(points), built_in, chosen)
+    bare = load(surface).with_loop_points(points)
+    landmarks = None if tip is None else [(appendage_tip(built_in), tip)]
+    tracts = atrial_tracts(chosen, layer=layer)
+    carried = carry_tracts(tracts, built_in, bare, landmarks=landmarks, maximum_distance=maximum_distance)
+    made = interpolate(bare, carried.tracts, **options)
+    return replace(made, notes=(*made.notes, *carried.notes))
+
+
+def appendage_tip(built_in: Model) -> NDArray[np.float64]:
+    """The vertex of a built-in atrium's appendage, its last region, that is farthest from the rest."""
+    tags, mesh = built_in.tags, built_in.mesh
+    assert tags is not None
+    is_appendage = tags == tags.max()
+    inside, rest = (mesh.vertices[np.unique(mesh.triangles[side])] for side in (is_appendage, ~is_appendage))
+    base = inside[(inside[:, None] == rest[None]).all(axis=2).any(axis=1)].mean(axis=0)
+    return np.asarray(inside[np.linalg.norm(inside - base, axis=1).argmax()])
+
+
+def _chamber(names: tuple[str, ...]) -> str:
+    """The chamber that has these names."""
+    known = {chamber: [*atrial_surface(chamber, edge_length=2).loop_names, tip] for chamber, tip in APPENDAGES.items()}
+    fitting = [chamber for chamber, its in known.items() if set(names) <= set(its)]
+    if len(fitting) == 1:
+        return fitting[0]
+    listed = "; ".join(f"{chamber}: {', '.join(map(repr, its))}" for chamber, its in known.items())
+    close = suggestions(names, [name for its in known.values() for name in its])
+    raise InvalidOption(
+        f"the names {', '.join(map(repr, names)) or '(none)'} do not tell the chamber; there are {listed}{close}"
+    )
+
+
+def _check_names(names: tuple[str, ...], built_in: Model, chamber: str) -> None:
+    known = [*built_in.loop_names, *([APPENDAGES[chamber]] if chamber in APPENDAGES else [])]
+    unknown = [name for name in names if name not in known]
+    if unknown:
+        raise InvalidOption(
+            f"the {chamber.replace('_', ' ')} has no {', '.join(map(repr, unknown))}; it has "
+            f"{', '.join(map(repr, known))}{suggestions(unknown, known)}"
+        )
+
+
+def _conditions(tracts: TractSet, found: Correspondence) -> tuple[tuple[BoundaryCondition, ...], list[str]]:
+    """Conditions by names that both surfaces have, and sentences about the others."""
+    names = {loop: name for name, loop in found.source.loop_names.items()}
+    kept, missing = [], []
+    for condition in tracts.boundary:
+        name = names.get(find_loop(found.source, condition.loop))
+        if name in found.loops:
+            kept.append(BoundaryCondition(name, condition.rule, condition.weight))
+        else:
+            missing.append(f"the surface has no loop named {name or condition.loop!r}: its condition was left out")
+    return tuple(kept), missing
+
+
+def _carried(
+    tracts: tuple[Tract, ...], found: Correspondence, limit: float
+) -> tuple[tuple[Tract, ...], list[str]]:
+    """Tracts on the target, and sentences about those that do not fit there."""
+    source, target = _core.TractProjector(found.source.mesh), _core.TractProjector(found.target.mesh)
+    kept, lost = [], []
+    for number, tract in enumerate(tracts):
+        what = f"tract {tract.name or number!r} was left out"
+        points = found.carry(_resampled(source, tract, found.source))
+        _, nearest, distances = target.nearest_surface_points(points)
+        if distances.max() > limit:
+            lost.append(f"{what}: it came to lie {distances.max():.1f} mm from the surface")
+            continue
+        try:
+            target.make_constraints([_core.Tract(nearest, name=tract.name)])
+        except InvalidOption as error:
+            lost.append(f"{what}: {error}")
+            continue
+        kept.append(replace(tract, points=nearest))
+    return tuple(kept), lost
+
+
+def _resampled(projector: _core.TractProjector, tract: Tract, source: Model) -> NDArray[np.float64]:
+    """Points of a tract's curve on its surface, evenly spaced."""
+    reach = source.mesh.bounding_box_diagonal
+    curve = projector.make_constraints([_core.Tract(tract.points, name=tract.name)], maximum_distance=reach).tracts[0]
+    lengths = np.linalg.norm(np.diff(curve.points, axis=0), axis=1)
+    along = np.concatenate([[0], np.cumsum(lengths)])
+    places = np.linspace(0, along[-1], 1 + max(1, int(np.ceil(along[-1] / _SPACING))))
+    return np.stack([np.interp(places, along, curve.points[:, axis]) for axis in range(3)], axis=1)
