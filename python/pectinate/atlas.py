@@ -24,8 +24,7 @@ from pectinate.tracts import BoundaryCondition, SurfaceIdentity, Tract, TractSet
 
 _FARTHEST = 0.1  # of the target's diagonal
 _SPACING = 3.0  # mm, of the carried tracts' points
-#: A point that may be named like a loop: the appendage's tip, by chamber.
-APPENDAGES = {"left_atrium": "left atrial appendage", "right_atrium": "right atrial appendage"}
+_CHAMBERS = ("left_atrium", "right_atrium")
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +62,6 @@ def carry_tracts(
     source: Model,
     target: Model,
     *,
-    landmarks: ArrayLike | None = None,
     maximum_distance: float | None = None,
 ) -> CarriedTracts:
     """Carry tracts and boundary conditions from one surface to another that has loops of the same names.
@@ -74,8 +72,6 @@ def carry_tracts(
         Drawn on the source; the names of their loops are known to it, or are added.
     source, target
         Models with at least three loop names in common.
-    landmarks
-        As in `pectinate.correspond`.
     maximum_distance
         mm: tracts that end up farther from the target are left out; by default a tenth of its bounding box's diagonal.
 
@@ -89,7 +85,7 @@ def carry_tracts(
     if not limit > 0:
         raise InvalidOption(f"maximum_distance is {maximum_distance}, but must be positive, mm")
     source = source.with_loop_points(tracts.loops)
-    found = correspond(source, target, landmarks=landmarks)
+    found = correspond(source, target)
     conditions, missing = _conditions(tracts, found)
     carried, lost = _carried(tracts.tracts, found, limit)
     loops = {name: target.data.loop_points[name] for name in found.loops}
@@ -117,8 +113,7 @@ def atlas(
     loops
         For each opening that is named a point (3,), mm, near it, or a file of them (see `pectinate.io.loop_file`). The
         names are those of `datasets.atrial_surface(chamber).loop_names`, at least three; openings that the surface does
-        not have are left away. The appendage's tip, `left atrial appendage` or `right atrial appendage`, may be named
-        too and helps.
+        not have are left away.
     chamber
         `left_atrium` or `right_atrium`; by default the one that has all the names.
     layer
@@ -146,29 +141,17 @@ def atlas(
     points = {name.replace("_", " "): three_numbers(at, f"the point of {name!r}") for name, at in given.items()}
     chosen = _chamber(tuple(points)) if chamber is None else chamber
     built_in = atrial_surface(chosen, layer=layer)
-    tip = points.pop(APPENDAGES.get(chosen, ""), None)
     _check_names(tuple(points), built_in, chosen)
     bare = load(surface).with_loop_points(points)
-    landmarks = None if tip is None else [(appendage_tip(built_in), tip)]
     tracts = atrial_tracts(chosen, layer=layer)
-    carried = carry_tracts(tracts, built_in, bare, landmarks=landmarks, maximum_distance=maximum_distance)
+    carried = carry_tracts(tracts, built_in, bare, maximum_distance=maximum_distance)
     made = interpolate(bare, carried.tracts, **options)
     return replace(made, notes=(*made.notes, *carried.notes))
 
 
-def appendage_tip(built_in: Model) -> NDArray[np.float64]:
-    """The vertex of a built-in atrium's appendage, its last region, that is farthest from the rest."""
-    tags, mesh = built_in.tags, built_in.mesh
-    assert tags is not None
-    is_appendage = tags == tags.max()
-    inside, rest = (mesh.vertices[np.unique(mesh.triangles[side])] for side in (is_appendage, ~is_appendage))
-    base = inside[(inside[:, None] == rest[None]).all(axis=2).any(axis=1)].mean(axis=0)
-    return np.asarray(inside[np.linalg.norm(inside - base, axis=1).argmax()])
-
-
 def _chamber(names: tuple[str, ...]) -> str:
     """The chamber that has these names."""
-    known = {chamber: [*atrial_surface(chamber, edge_length=2).loop_names, tip] for chamber, tip in APPENDAGES.items()}
+    known = {chamber: list(atrial_surface(chamber, edge_length=2).loop_names) for chamber in _CHAMBERS}
     fitting = [chamber for chamber, its in known.items() if set(names) <= set(its)]
     if len(fitting) == 1:
         return fitting[0]
@@ -180,7 +163,7 @@ def _chamber(names: tuple[str, ...]) -> str:
 
 
 def _check_names(names: tuple[str, ...], built_in: Model, chamber: str) -> None:
-    known = [*built_in.loop_names, *([APPENDAGES[chamber]] if chamber in APPENDAGES else [])]
+    known = list(built_in.loop_names)
     unknown = [name for name in names if name not in known]
     if unknown:
         raise InvalidOption(
@@ -202,9 +185,7 @@ def _conditions(tracts: TractSet, found: Correspondence) -> tuple[tuple[Boundary
     return tuple(kept), missing
 
 
-def _carried(
-    tracts: tuple[Tract, ...], found: Correspondence, limit: float
-) -> tuple[tuple[Tract, ...], list[str]]:
+def _carried(tracts: tuple[Tract, ...], found: Correspondence, limit: float) -> tuple[tuple[Tract, ...], list[str]]:
     """Tracts on the target, and sentences about those that do not fit there."""
     source, target = _core.TractProjector(found.source.mesh), _core.TractProjector(found.target.mesh)
     kept, lost = [], []

@@ -18,9 +18,10 @@ _LEAST_LOOPS = 3
 _LANDMARK_STIFFNESS = 1e-3
 _STIFFNESSES = (1.0, 0.3, 0.1, 0.03, 0.01, 0.01, 0.003, 0.003)
 _SAMPLES = 300
+_RING_POINTS = 16
+_RING_SHIFTS = 8  # per point
 _ALIKE = 0.5  # least cosine between the normals of points that are taken for each other
 _SAME_PLACE = 1e-6  # of the source's diagonal
-_PAIR = (2, 3)
 _PERCENTILES = {"median": 50, "p95": 95, "greatest": 100}
 
 _Points = NDArray[np.float64]
@@ -63,33 +64,31 @@ class Correspondence:
         }
 
 
-def correspond(source: Model, target: Model, *, landmarks: ArrayLike | None = None) -> Correspondence:
+def correspond(source: Model, target: Model) -> Correspondence:
     """Bring one surface onto another by the loops that have the same names.
 
-    The centres of these loops, a point one radius in front of each, the centres of both surfaces and further landmarks
-    begin it; then, round by round, each surface's points are drawn to the nearest points of the other, less and less
-    stiffly.
+    The centres of these loops, a point one radius in front of each and the centres of both surfaces begin it; then, round by round, the loops are drawn to each other, and each surface's points to the nearest points
+    of the other, less and less stiffly.
 
     Parameters
     ----------
     source, target
         Models with at least three loop names in common, see `Model.with_loop_points`.
-    landmarks
-        (n, 2, 3), mm: further points of the source, each with its counterpart.
 
     Raises
     ------
     InvalidOption
-        Too few names in common, two names for one loop, landmarks of another shape or not finite, or names that turn
-        the surface inside out, because left and right are exchanged.
+        Too few names in common, two names for one loop, or names that turn the surface inside out, because left and
+        right are exchanged.
     """
     names = common_loops(source, target)
     sides = [_loop_landmarks(model, names) for model in (source, target)]
-    pairs = np.concatenate([np.stack(sides, axis=1), _further(landmarks)])
+    pairs = np.stack(sides, axis=1)
     warp = _spline(pairs, _LANDMARK_STIFFNESS, source)
-    matcher = _Matcher(source, target)
+    matcher, rings = _Matcher(source, target), [_Rings(source, target, name) for name in names]
     for stiffness in _STIFFNESSES:
-        warp = _spline(np.concatenate([pairs, matcher.pairs(warp)]), stiffness, source)
+        matched = [*(ring.pairs(warp) for ring in rings), matcher.pairs(warp)]
+        warp = _spline(np.concatenate([pairs, *matched]), stiffness, source)
     moved = _core.warp_points(warp, source.mesh.vertices)
     centres = sides[1][: len(names)]
     return Correspondence(
@@ -152,7 +151,7 @@ def _opening(mesh: _core.SurfaceMesh, loop: int) -> tuple[_Points, _Points]:
     lengths = np.linalg.norm(sides, axis=1)
     centre = np.average(points + sides / 2, axis=0, weights=lengths)
     radius = lengths.sum() / (2 * np.pi)
-    normal = np.cross(points - centre, sides).sum(axis=0)
+    normal = _normal(points, centre)
     centres = mesh.vertices[mesh.triangles].mean(axis=1)
     beside = np.linalg.norm(centres - centre, axis=1) < 2 * radius
     behind = np.average(centres[beside] - centre, axis=0, weights=mesh.triangle_areas[beside])
@@ -161,16 +160,14 @@ def _opening(mesh: _core.SurfaceMesh, loop: int) -> tuple[_Points, _Points]:
     return centre, centre + radius * outward / size if size > 0 else centre - behind
 
 
+def _normal(points: _Points, centre: _Points) -> _Points:
+    """Twice the area that a closed line of points goes round, as a vector."""
+    return np.asarray(np.cross(points - centre, np.roll(points, -1, axis=0) - centre).sum(axis=0))
+
+
 def _centre(mesh: _core.SurfaceMesh) -> _Points:
     centres = mesh.vertices[mesh.triangles].mean(axis=1)
     return np.asarray(np.average(centres, axis=0, weights=mesh.triangle_areas))
-
-
-def _further(landmarks: ArrayLike | None) -> _Points:
-    pairs = np.empty((0, *_PAIR)) if landmarks is None else np.asarray(landmarks, dtype=np.float64)
-    if pairs.shape[1:] != _PAIR or not np.isfinite(pairs).all():
-        raise InvalidOption(f"landmarks have the shape {pairs.shape}; give finite pairs of points, (n, 2, 3), mm")
-    return pairs
 
 
 def _spline(pairs: _Points, stiffness: float, source: Model) -> _core.LandmarkWarp:
@@ -179,6 +176,22 @@ def _spline(pairs: _Points, stiffness: float, source: Model) -> _core.LandmarkWa
     repeated = np.tril(apart <= _SAME_PLACE * source.mesh.bounding_box_diagonal, -1).any(axis=1)
     kept = pairs[~repeated]
     return _core.make_landmark_warp(kept[:, 0], kept[:, 1], stiffness=stiffness)
+
+
+class _Rings:
+    """Pairs of points along a loop that two surfaces have, once around both."""
+
+    def __init__(self, source: Model, target: Model, name: str) -> None:
+        self._source = _ring(source.mesh, source.loop_names[name], _RING_POINTS)
+        self._target = _ring(target.mesh, target.loop_names[name], _RING_POINTS * _RING_SHIFTS)
+
+    def pairs(self, warp: _core.LandmarkWarp) -> _Points:
+        """Points of the source's loop with points of the target's, (n, 2, 3), begun where they fit best under a map."""
+        moved = _core.warp_points(warp, self._source)
+        places = np.arange(0, len(self._target), _RING_SHIFTS) + np.arange(len(self._target))[:, None]
+        shifted = self._target[places % len(self._target)]
+        best = np.linalg.norm(shifted - moved, axis=2).sum(axis=1).argmin()
+        return np.stack([self._source, shifted[best]], axis=1)
 
 
 class _Matcher:
@@ -212,6 +225,17 @@ class _Matcher:
         origins = self._source.vertices[self._source.triangles[triangles]]
         places = np.einsum("tk,tki->ti", _weights(corners[triangles], nearest), origins)
         return np.stack([places, points], axis=1)[alike]
+
+
+def _ring(mesh: _core.SurfaceMesh, loop: int, count: int) -> _Points:
+    """Evenly spaced points along a loop, counter-clockwise seen from in front of it."""
+    centre, front = _opening(mesh, loop)
+    points = mesh.vertices[mesh.boundary_loops[loop].vertices]
+    points = points if _normal(points, centre) @ (front - centre) > 0 else points[::-1]
+    closed = np.vstack([points, points[:1]])
+    along = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(closed, axis=0), axis=1))])
+    places = np.linspace(0, along[-1], count, endpoint=False)
+    return np.stack([np.interp(places, along, closed[:, axis]) for axis in range(3)], axis=1)
 
 
 def _spread(mesh: _core.SurfaceMesh) -> NDArray[np.int64]:
