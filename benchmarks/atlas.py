@@ -122,7 +122,7 @@ def angle_lines(name: str) -> list[Line]:
 def fit_line(name: str) -> Line:
     """Distances of the warped surface, tracts carried and left out, time."""
     made, seconds, _ = fields(name)
-    built_in = pectinate.datasets.atrial_surface(chamber(name), layer=layer(name))
+    built_in = pectinate.datasets.atrial_surface(chamber(name), layer=layer(name), edge_length=2)
     drawn = pectinate.datasets.atrial_tracts(chamber(name), layer=layer(name))
     apart = pectinate.correspond(built_in, named(name)).report()["distances"].values()
     counts = [str(len(made.tracts.tracts)), str(len(drawn.tracts) - len(made.tracts.tracts))]

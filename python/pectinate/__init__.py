@@ -12,7 +12,7 @@ from importlib.metadata import version
 
 from pectinate import datasets, errors, viewer
 from pectinate._core import OrientationField, SurfaceMesh, Tubes
-from pectinate.atlas import CarriedTracts, atlas, carry_tracts
+from pectinate.atlas_field import CarriedTracts, atlas, carry_tracts
 from pectinate.comparison import Comparison, add_noise, compare
 from pectinate.correspondence import Correspondence, correspond
 from pectinate.interpolated_field import InterpolatedField

@@ -67,8 +67,9 @@ class Correspondence:
 def correspond(source: Model, target: Model) -> Correspondence:
     """Bring one surface onto another by the loops that have the same names.
 
-    The centres of these loops, a point one radius in front of each and the centres of both surfaces begin it; then, round by round, the loops are drawn to each other, and each surface's points to the nearest points
-    of the other, less and less stiffly.
+    The centres of these loops, a point one radius in front of each and the centres of both surfaces begin it; then,
+    round by round, the loops are drawn to each other and each surface's points to the nearest points of the other, less
+    and less stiffly.
 
     Parameters
     ----------

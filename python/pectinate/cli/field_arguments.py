@@ -70,7 +70,7 @@ def _add_atlas(subparsers: argparse._SubParsersAction[Parser]) -> None:
     group.add_argument("--maximum-distance", type=float, metavar="MM", help="tracts farther off are left out")
     group.add_argument("--method", metavar="METHOD", help=f"{METHODS[0]} (the default), or the paper's {METHODS[1]}")
     group.add_argument(
-        "--conflict-angle", type=degrees, metavar="DEGREES", help="tracts that differ by more are in conflict"
+        "--conflict-angle", type=degrees(90), metavar="DEGREES", help="tracts that differ by more are in conflict"
     )
     _add_outputs(parser)
     parser.add_argument("--tracts-out", type=Path, metavar="FILE", help="the tracts as carried, .json")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from pectinate.tracts import BoundaryCondition, SurfaceIdentity, Tract, TractSet
 
 _FARTHEST = 0.1  # of the target's diagonal
 _SPACING = 3.0  # mm, of the carried tracts' points
+_EDGE_LENGTH = 2.0  # mm, of the built-in atrium: only its shape matters
 _CHAMBERS = ("left_atrium", "right_atrium")
 
 
@@ -134,13 +136,11 @@ def atlas(
         A name that the chamber does not have, with those that it has; and as in `carry_tracts` and `interpolate`.
     InvalidFile
         The file of loops is missing or malformed.
-    InvalidMesh
-        The surface has no loops.
     """
     given = loops if isinstance(loops, Mapping) else read_loops(loops)
     points = {name.replace("_", " "): three_numbers(at, f"the point of {name!r}") for name, at in given.items()}
     chosen = _chamber(tuple(points)) if chamber is None else chamber
-    built_in = atrial_surface(chosen, layer=layer)
+    built_in = _built_in(chosen, layer)
     _check_names(tuple(points), built_in, chosen)
     bare = load(surface).with_loop_points(points)
     tracts = atrial_tracts(chosen, layer=layer)
@@ -149,9 +149,14 @@ def atlas(
     return replace(made, notes=(*made.notes, *carried.notes))
 
 
+@cache
+def _built_in(chamber: str, layer: str) -> Model:
+    return atrial_surface(chamber, layer=layer, edge_length=_EDGE_LENGTH)
+
+
 def _chamber(names: tuple[str, ...]) -> str:
     """The chamber that has these names."""
-    known = {chamber: list(atrial_surface(chamber, edge_length=2).loop_names) for chamber in _CHAMBERS}
+    known = {chamber: list(_built_in(chamber, "epicardium").loop_names) for chamber in _CHAMBERS}
     fitting = [chamber for chamber, its in known.items() if set(names) <= set(its)]
     if len(fitting) == 1:
         return fitting[0]
