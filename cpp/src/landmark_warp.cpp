@@ -119,8 +119,7 @@ LandmarkWarp make_landmark_warp(std::span<const Vec3> from, std::span<const Vec3
   const Points solution = equations(source.points, options.stiffness).partialPivLu().solve(values);
   const Eigen::Matrix3d linear = solution.middleRows(count, 3).transpose() * (target.spread / source.spread);
   check_not_mirrored(linear);
-  const Vector offset =
-      target.centre + target.spread * solution.row(count + 3).transpose() - linear * source.centre;
+  const Vector offset = target.centre + target.spread * solution.row(count + 3).transpose() - linear * source.centre;
 
   LandmarkWarp warp{{from.begin(), from.end()}, {}, {}, detail::vec3(offset)};
   for (int k = 0; k < 3; ++k) warp.linear[k] = detail::vec3(linear.row(k));

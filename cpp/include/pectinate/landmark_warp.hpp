@@ -25,8 +25,8 @@ struct LandmarkWarp {
 };
 
 /// Makes the map from `from` to `to`, one counterpart each. It does not depend on the order of the landmarks nor, both
-/// sides together or apart, on where they lie, how they are turned and how large they are, but for rounding; affine maps
-/// are reproduced.
+/// sides together or apart, on where they lie, how they are turned and how large they are, but for rounding; affine
+/// maps are reproduced.
 ///
 /// Throws InvalidOption for: other counts; fewer than four landmarks, or all of `from` or all of `to` in one plane; two
 /// landmarks of `from` in one place; coordinates that are not finite; a stiffness that is negative or not finite; and
