@@ -31,7 +31,7 @@ help:  ## show this list
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):[^#]*## */  make \1\t/' | expand -t 20
 
 .PHONY: demo
-demo: $(STAMPS)/installed  ## place streamlines on the demo atrium and draw them
+demo: $(STAMPS)/installed  ## make both atria with their fibres, pictures, a page and files
 	@$(BIN)/pectinate demo --out demo
 
 .PHONY: test

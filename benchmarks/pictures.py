@@ -1,6 +1,6 @@
 """Draw the pictures of the documentation: `python benchmarks/pictures.py`, or `make pictures`.
 
-The figures are those of the paper, on the demo atrium: how the reference orientation comes about (Fig. 3), how a few
+The figures are those of the paper: the fibres of both atria (Fig. 8) and, on the demo atrium, how the reference orientation comes about (Fig. 3), how a few
 tracts make a field step by step (Fig. 4), what noise does to streamlines, and smoothing to noise (Fig. 10).
 """
 
@@ -16,6 +16,7 @@ from PIL import Image, ImageDraw, ImageFont
 import pectinate
 from demo_fields import DemoFields, streamline_layer
 from pectinate import _core
+from pectinate.datasets.sheets import AtrialFibres, fibre_sheet
 from pectinate.figure import SurfaceValues, View, draw_disk, draw_sheet
 
 FOLDER = Path(__file__).resolve().parents[1] / ".github" / "images"
@@ -37,6 +38,18 @@ def demo_atrium() -> Image.Image:
     """The picture at the top of the README."""
     placement = pectinate.place_streamlines(pectinate.datasets.demo_atrium(), separation_distance=1.6)
     return placement.figure(views=["anterior", "posterior", "left"], size=(560, 470))
+
+
+def atria_fibres() -> Image.Image:
+    """Fig. 8: both layers of the built-in atria in three views, with the numbers of the paper's rows."""
+    layers = {
+        layer: {
+            name: AtrialFibres(made, pectinate.place_streamlines(made.model))
+            for name, made in pectinate.datasets.atria(layer=layer).items()
+        }
+        for layer in ("epicardium", "endocardium")
+    }
+    return fibre_sheet(layers, size=(620, 540))
 
 
 def posterior() -> Image.Image:
@@ -167,6 +180,7 @@ def with_few_shades(picture: Image.Image) -> Image.Image:
 
 PICTURES: dict[str, Callable[[], Image.Image]] = {
     "demo_atrium": demo_atrium,
+    "atria_fibres": atria_fibres,
     "posterior": posterior,
     "reference_frame": reference_frame,
     "interpolation_steps": steps,

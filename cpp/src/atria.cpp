@@ -56,6 +56,7 @@ detail::ImplicitSurface make_surface(const Chamber& chamber, AtrialLayer layer) 
 /// The part that the point is deepest in.
 std::int32_t region_of(const Chamber& chamber, const Vector& point) {
   std::vector<double> depths;
+  depths.reserve(chamber.parts.size());
   for (const auto& part : chamber.parts) depths.push_back(part.function(point).value);
   return static_cast<std::int32_t>(std::min_element(depths.begin(), depths.end()) - depths.begin());
 }

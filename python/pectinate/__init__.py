@@ -15,6 +15,7 @@ from pectinate._core import OrientationField, SurfaceMesh, Tubes
 from pectinate.atlas_field import CarriedTracts, atlas, carry_tracts
 from pectinate.comparison import Comparison, add_noise, compare
 from pectinate.correspondence import Correspondence, correspond
+from pectinate.figure import Cell, Marker, Part, PatientAxes, figure_sheet
 from pectinate.interpolated_field import InterpolatedField
 from pectinate.interpolation import FieldEditor, interpolate
 from pectinate.io import load, save_surface
@@ -30,13 +31,17 @@ from pectinate.tracts import BoundaryCondition, SurfaceIdentity, Tract, TractSet
 __all__ = [
     "BoundaryCondition",
     "CarriedTracts",
+    "Cell",
     "Comparison",
     "Correspondence",
     "DiskMap",
     "FieldEditor",
     "InterpolatedField",
+    "Marker",
     "Model",
     "OrientationField",
+    "Part",
+    "PatientAxes",
     "Placement",
     "PlacementStatistics",
     "SmoothedField",
@@ -53,6 +58,7 @@ __all__ = [
     "correspond",
     "datasets",
     "errors",
+    "figure_sheet",
     "find_loop",
     "interpolate",
     "load",

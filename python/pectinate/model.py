@@ -16,12 +16,12 @@ from pectinate import _core
 from pectinate._core import OrientationField, SurfaceMesh
 from pectinate.errors import InvalidField, InvalidMesh, InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
+from pectinate.figure.parts import Lines, Part, Values, named_values
 from pectinate.figure.sheet import draw_sheet
 from pectinate.io.gltf import make_trimesh
 from pectinate.io.vtk_library import surface_dataset
 from pectinate.summary import summarize
-from pectinate.viewer import Lines, Page, Part
-from pectinate.viewer.parts import Values, named_values
+from pectinate.viewer import Page
 
 if TYPE_CHECKING:
     from pectinate.io.units import UnitDecision
@@ -269,9 +269,11 @@ class Model:
         tracts: Sequence[ArrayLike] = (),
         tract_radius: float | None = None,
         surface_values: Values | None = None,
-        visible: bool = True,
+        **options: Any,
     ) -> Part:
-        """Make a part of an interactive page, which may have several, see `pectinate.viewer.Page`.
+        """Make a part of a page or of a sheet of pictures, which may have several.
+
+        See `pectinate.viewer.Page` and `pectinate.figure_sheet`.
 
         Parameters
         ----------
@@ -283,13 +285,13 @@ class Model:
             mm; by default a 200th of the surface's diagonal.
         surface_values
             Numbers per triangle or vertex of `mesh`, as in `figure`; several by name.
-        visible
-            Whether it is switched on at first.
+        options
+            Of `Part`: `visible`, `surface_color`, `offset`, `rotation`.
 
         Raises
         ------
         InvalidOption
-            A tract is no line, or the radius is not above 0.
+            A tract is no line, or an option is out of its range.
         """
         radius = _TRACT_RADIUS * self.mesh.bounding_box_diagonal if tract_radius is None else tract_radius
         return Part(
@@ -297,7 +299,7 @@ class Model:
             (self.mesh.vertices, self.mesh.triangles),
             tracts=Lines.of(tracts, radius) if len(tracts) else None,
             surface_values=named_values(surface_values),
-            visible=visible,
+            **options,
         )
 
     def show(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
@@ -18,13 +19,15 @@ from pectinate import _core
 from pectinate.choices import member
 from pectinate.errors import InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
+from pectinate.figure.parts import Lines, Part
 from pectinate.figure.plots import draw_lengths
+from pectinate.figure.shape import Triangles
 from pectinate.figure.sheet import draw_sheet
 from pectinate.io import lines, load, streamlines
 from pectinate.io.gltf import make_scene
 from pectinate.model import Model
 from pectinate.statistics import PlacementStatistics
-from pectinate.viewer import Lines, Page, Part
+from pectinate.viewer import Page
 
 _OPTION_NAMES = (
     "separation_distance",
@@ -40,7 +43,7 @@ _OPTION_NAMES = (
     "random_seed",
     "thread_count",
 )
-_PAGE_OPTIONS = {"markers", "notes", "views", "axes", "shown_values", "style"}
+_PAGE_OPTIONS = inspect.signature(Page).parameters.keys() - {"parts"}
 _ENUMERATIONS: dict[str, type[Enum]] = {"method": _core.PlacementMethod, "occupancy": _core.OccupancyModel}
 
 
@@ -316,42 +319,54 @@ class Placement:
         return draw_lengths([self.lengths], path, **options)
 
     def part(
-        self, name: str = "", *, tube_radius: float | None = None, taper_length: float | None = None, **options: Any
+        self,
+        name: str = "",
+        *,
+        tube_radius: float | None = None,
+        taper_length: float | None = None,
+        side_count: int | None = None,
+        **options: Any,
     ) -> Part:
-        """Make a part of an interactive page, which may have several, see `pectinate.viewer.Page`.
+        """Make a part of a page or of a sheet of pictures, which may have several.
+
+        See `pectinate.viewer.Page` and `pectinate.figure_sheet`.
 
         Parameters
         ----------
         name
-            Beside its switch.
-        tube_radius, taper_length
-            As `radius` and `taper_length` of `tubes`; the page has a slider for the radius.
+            Of the part.
+        tube_radius, taper_length, side_count
+            As `radius`, `taper_length` and `side_count` of `tubes`; a page has a slider for the radius.
         options
-            Of `Model.part`: `tracts`, `surface_values`, `visible`, ...
+            Of `Model.part`: `tracts`, `surface_values`, `offset`, ...
 
         Raises
         ------
         InvalidOption
             An option is out of its range.
         """
+
+        def make_tubes() -> Triangles:
+            tubes = self.tubes(radius=tube_radius, taper_length=taper_length, side_count=side_count)
+            return tubes.vertices, tubes.triangles
+
         drawn = Lines(
             self.points,
             self.offsets,
             self.default_tube_radius() if tube_radius is None else tube_radius,
             _core.default_taper_length if taper_length is None else taper_length,
+            make_tubes,
         )
         return replace(self.model.part(name, **options), streamlines=drawn)
 
-    def page(self, *, title: str = "", **options: Any) -> Page:
+    def page(self, **options: Any) -> Page:
         """Make an interactive page: one HTML file that needs neither a server nor the network.
 
         Parameters
         ----------
-        title
-            Above the switches.
         options
-            Of `part` (`tube_radius`, `tracts`, `surface_values`, ...) and of `pectinate.viewer.Page` (`markers`,
-            `views`, ...).
+            Of `part` (`tube_radius`, `tracts`, `surface_values`, ...) and of `pectinate.viewer.Page` (`title`,
+            `markers`, `views`, ...).
 
         Raises
         ------
@@ -364,7 +379,7 @@ class Placement:
             f"{statistics.streamline_count:,} streamlines, {self.options['separation_distance']:g} mm apart, mean "
             f"length {statistics.mean_length:.1f} mm"
         ]
-        return Page(self.part(**options), **{"title": title, "notes": notes, **of_page})
+        return Page(self.part(**options), **{"notes": notes, **of_page})
 
     def show(self, **options: Any) -> Page:
         """Show the surface with the streamlines in the browser, to be turned and zoomed; in Jupyter, in the notebook.

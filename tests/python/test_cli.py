@@ -11,18 +11,20 @@ import signal
 import subprocess
 import sys
 from importlib.metadata import version
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import pectinate
 from command_line import SIDE, check_error, run_json, write_lines
+from pectinate import _core
 from pectinate.cli import ExitCode, commands, main
 from pectinate.cli.progress import ProgressBar
 
 
 def test_place_writes_every_format_and_reports_it(square, tmp_path, capsys):
-    files = [tmp_path / f"r{suffix}" for suffix in (".npz", ".vtp", ".ply", ".obj", ".glb")]
+    files = [tmp_path / f"r{suffix}" for suffix in (".npz", ".vtp", ".ply", ".obj", ".glb", ".html")]
     report = run_json(capsys, "place", square, *(word for path in files for word in ("--out", path)))
     assert report["files"] == [str(path) for path in files]
     assert all(path.stat().st_size > 0 for path in files)
@@ -98,12 +100,25 @@ def test_quiet_prints_nothing(square, capsys):
     assert capsys.readouterr() == ("", "")
 
 
-def test_demo_writes_streamlines_and_picture(tmp_path, capsys):
+def test_demo_makes_both_atria_inside_and_outside(tmp_path, capsys):
     folder = tmp_path / "a" / "b"
-    report = run_json(capsys, "demo", "--out", folder, "--edge-length", "3", "--separation", "5", "--seeds", "2")
-    assert report["files"] == [str(folder / "demo_atrium.npz"), str(folder / "demo_atrium.png")]
-    assert (folder / "demo_atrium.png").read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
-    assert len(report["surface"]["boundary_loops"]) == 5
+    report = run_json(capsys, "demo", "--out", folder, "--edge-length", "2", "--separation", "5")
+    surfaces = [(row["layer"], row["chamber"]) for row in report["surfaces"]]
+    assert surfaces == [
+        ("epicardium", "left_atrium"),
+        ("epicardium", "right_atrium"),
+        ("epicardium", "bachmann_bundle"),
+        ("endocardium", "left_atrium"),
+        ("endocardium", "right_atrium"),
+    ]
+    assert all(row["statistics"]["coverage"] > 0.99 and row["seconds"] > 0 for row in report["surfaces"])
+    written = {path for path in folder.rglob("*") if path.is_file()}
+    assert {Path(path) for path in report["files"]} == written
+    assert (folder / "fibres.png").read_bytes().startswith(b"\x89PNG\r\n\x1a\n")
+    loaded = pectinate.load(folder / "epicardium" / "left_atrium.pts")
+    tracts = folder / "epicardium" / "left_atrium_tracts.json"
+    again = pectinate.interpolate(loaded, tracts, maximum_distance=5)
+    assert np.degrees(_core.angles_between(again.field, loaded.field)).max() < 0.01  # digits of the files
 
 
 @pytest.mark.parametrize(
@@ -201,7 +216,7 @@ def test_interrupt_ends_at_once_with_its_code(tmp_path):
     # Processes in the background ignore the signal unless told otherwise.
     heed = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
     program = f"{heed}; import sys; from pectinate.cli import main; sys.exit(main())"
-    words = ["demo", "--out", str(tmp_path), "--edge-length", "0.5", "--separation", "0.1", "--json"]
+    words = ["demo", "--out", str(tmp_path), "--edge-length", "1", "--separation", "0.04", "--json"]
     process = subprocess.Popen([sys.executable, "-c", program, *words], stdout=subprocess.PIPE, stderr=terminal)
     os.close(terminal)
     seen = b""

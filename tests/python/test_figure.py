@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from pectinate import datasets, place_streamlines
 from pectinate.errors import InvalidFile, InvalidMesh, InvalidOption, RenderingUnavailable
-from pectinate.figure import STANDARD_VIEWS, Style, View, context, draw_sheet, principal_views, render_view, sheet
+from pectinate.figure import STANDARD_VIEWS, Style, View, context, draw_sheet, principal_views, render_view, scale_bar
 from pectinate.figure.context import offscreen_context
 
 Arrays = tuple[NDArray[np.float64], NDArray[np.int64]]
@@ -151,7 +151,7 @@ def test_the_scale_bar_has_its_length_and_keeps_off_the_label(width: float) -> N
 @pytest.mark.parametrize("power", range(-6, 7))
 def test_bars_are_round_and_as_long_as_can_be(power: int) -> None:
     for longest in (10.0**power, np.nextafter(10.0**power, 0), np.nextafter(10.0**power, np.inf), 4.9 * 10.0**power):
-        length = sheet._round_length(float(longest))
+        length = scale_bar.round_length(float(longest))
         assert longest / 2.5 < length * (1 + 1e-12) <= longest * (1 + 1e-11)
 
 

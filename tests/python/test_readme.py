@@ -27,6 +27,7 @@ def test_the_examples_run_and_make_what_they_say(tmp_path: Path, monkeypatch: py
         pytest.skip(str(error))
     assert {path.name for path in tmp_path.iterdir()} == {
         *("streamlines.npz", "tubes.glb", "posterior.png"),
+        *("right_atrium.pts", "right_atrium.elem", "right_atrium.lon"),
         *("atrium.vtp", "made.png"),
         *("atrium.html", "both.html", "lines.vtp"),
     }

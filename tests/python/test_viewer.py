@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 import sys
+import tempfile
 import types
 import webbrowser
 import zipfile
@@ -16,6 +17,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 import meshes
 import pectinate
@@ -168,12 +170,38 @@ def test_source_values_go_to_the_mesh() -> None:
 
 def test_show_opens_a_file(placement: pectinate.Placement, monkeypatch: pytest.MonkeyPatch) -> None:
     opened: list[str] = []
-    monkeypatch.setattr(webbrowser, "open", opened.append)
+    monkeypatch.setattr(webbrowser, "open", lambda address: opened.append(address) or True)
     pages = [placement.show(title="t"), placement.model.show(title="u")]
     for page, address in zip(pages, opened, strict=True):
         path = Path(url2pathname(urlparse(address).path))
         assert path.read_text(encoding="utf-8") == page.html
         path.unlink()
+
+
+def test_without_a_browser_show_says_so(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(webbrowser, "open", lambda _: False)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with pytest.raises(MissingDependency, match="save the page"):
+        Page(Part("", meshes.grid())).show()
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize(
+    ("points", "offsets"),
+    [
+        (np.zeros((3, 2)), [0, 3]),
+        (np.full((3, 3), np.nan), [0, 3]),
+        (np.zeros((3, 3)), []),
+        (np.zeros((3, 3)), [0, 2]),
+        (np.zeros((3, 3)), [1, 3]),
+        (np.zeros((3, 3)), [0, 1, 3]),
+        (np.zeros((3, 3)), [0, 4, 3]),
+        (np.zeros((3, 3)), [[0, 3]]),
+    ],
+)
+def test_lines_must_fit_together(points: NDArray[np.float64], offsets: list[int]) -> None:
+    with pytest.raises(InvalidOption, match="lines"):
+        Lines(points, np.array(offsets, dtype=np.int64), 1.0)
 
 
 def test_in_a_notebook_the_page_is_displayed_not_opened(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -208,7 +236,7 @@ def test_what_cannot_be_shown_is_refused(placement: pectinate.Placement, tmp_pat
     with pytest.raises(InvalidOption, match="position"):
         Marker((0, 0, np.nan), "1")
     for wrong in ([[0, 0, 0]], [[0, 0, 0], [np.nan, 0, 0]], [[0, 0], [1, 1]]):
-        with pytest.raises(InvalidOption, match="line 0"):
+        with pytest.raises(InvalidOption, match="line"):
             placement.part(tracts=[wrong])
     for option in ({"tube_radius": 0}, {"tube_radius": np.nan}, {"taper_length": -1}, {"tract_radius": 0}):
         with pytest.raises(InvalidOption, match=r"radius|taper_length"):
@@ -290,3 +318,24 @@ def test_view_refuses_before_it_works(tmp_path: Path, capsys: pytest.CaptureFixt
     ):
         assert main(["view", *words]) == code
         assert text in capsys.readouterr().err
+
+
+def test_parts_of_a_page_stand_where_they_are_placed_and_have_their_colors() -> None:
+    vertices, triangles = meshes.grid()
+    turn = ((0.0, -1.0, 0.0), (1.0, 0.0, 0.0), (0.0, 0.0, 1.0))
+    lines = Lines.of([vertices[:3]], 0.1)
+    placed = Part(
+        "moved", (vertices, triangles), tracts=lines, surface_color=(1, 0, 0), offset=(5, 6, 7), rotation=turn
+    )
+    by_hand = vertices @ np.array(turn).T + [5, 6, 7]
+    other = Part("by hand", (by_hand, triangles), tracts=Lines.of([by_hand[:3]], 0.1))
+    x, y, z = vertices[4].tolist()
+    shown = description(Page(placed, markers=[Marker((x, y, z), "1")]))
+    expected = description(Page(other))
+    (part,), (same,) = shown["parts"], expected["parts"]
+    assert part["surface"] == same["surface"]
+    assert part["tracts"] == same["tracts"]
+    assert part["surface_color"] == [1, 0, 0]
+    assert same["surface_color"] == list(pectinate.figure.Style().surface_color)
+    assert shown["markers"][0]["position"] == pytest.approx(by_hand[4].tolist())
+    assert shown["views"] == expected["views"]

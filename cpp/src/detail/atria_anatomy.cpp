@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "detail/band.hpp"
@@ -13,7 +14,9 @@ namespace pectinate::detail {
 
 namespace {
 
-constexpr double vestibule_fillet = 12, septum_fillet = 5;
+constexpr double vestibule_fillet = 12, septum_fillet = 5, vein_fillet = 9, cava_fillet = 10, sinus_fillet = 6;
+constexpr double left_appendage_fillet = 6, right_appendage_fillet = 8;
+constexpr double largest_fillet = vestibule_fillet;
 
 /// Both atria are flat on either side of this plane; the fossa ovalis is a hole through both walls.
 struct Septum {
@@ -72,7 +75,7 @@ class Builder {
         blended = smooth_union(blended, parts[i].function(point), fillets[i]);
       return blended;
     };
-    chamber_.bounds = widen(chamber_.bounds, 3);  // blending swells by a sixth of the fillet at most
+    chamber_.bounds = widen(chamber_.bounds, largest_fillet / 6 + 1);  // blending swells by a sixth at most
     return std::move(chamber_);
   }
 
@@ -87,13 +90,13 @@ Chamber make_left_chamber() {
   const Septum septum;
   Builder builder({Vector(10, 10, 2), Vector(23.5, 17, 19.5)}, {Vector(15, 4, -4), Vector(26, -7, -14), 18, 17},
                   septum.left_side(), "mitral_valve");
-  builder.add(make_sleeve("left_superior_pulmonary_vein", {22, 14, 10}, {40.5, 22.5, 22}, 6.5), 9);
-  builder.add(make_sleeve("left_inferior_pulmonary_vein", {22, 16, -4}, {40.5, 30, -7.5}, 6), 9);
-  builder.add(make_sleeve("right_superior_pulmonary_vein", {-1, 15, 11}, {-21, 22.5, 19}, 6.5), 9);
-  builder.add(make_sleeve("right_inferior_pulmonary_vein", {-2, 16, -4}, {-20, 30, -8.5}, 6), 9);
+  builder.add(make_sleeve("left_superior_pulmonary_vein", {22, 14, 10}, {40.5, 22.5, 22}, 6.5), vein_fillet);
+  builder.add(make_sleeve("left_inferior_pulmonary_vein", {22, 16, -4}, {40.5, 30, -7.5}, 6), vein_fillet);
+  builder.add(make_sleeve("right_superior_pulmonary_vein", {-1, 15, 11}, {-21, 22.5, 19}, 6.5), vein_fillet);
+  builder.add(make_sleeve("right_inferior_pulmonary_vein", {-2, 16, -4}, {-20, 30, -8.5}, 6), vein_fillet);
   const BentCone appendage({Vector(24, 0, 9), Vector(36, -30, 8), 8, 4.5}, Vector(1, -0.35, 0.25));
-  builder.add({"left_atrial_appendage", [=](const Vector& point) { return appendage.sample(point); }}, 6,
-              appendage.bounds());
+  builder.add({"left_atrial_appendage", [=](const Vector& point) { return appendage.sample(point); }},
+              left_appendage_fillet, appendage.bounds());
   builder.open("fossa_ovalis", septum.fossa());
   return builder.finish();
 }
@@ -102,15 +105,15 @@ Chamber make_right_chamber() {
   const Septum septum;
   Builder builder({Vector(-17.5, -7.5, -2), Vector(20, 19, 26)}, {Vector(-17, -11, -7), Vector(-5, -24, -18), 20, 19.5},
                   septum.right_side(), "tricuspid_valve");
-  builder.add(make_sleeve("superior_vena_cava", {-24, -5, 14}, {-25, -3, 40}, 9), 10);
-  builder.add(make_sleeve("inferior_vena_cava", {-23, 0, -18}, {-24, 8, -37}, 11), 10);
-  builder.add(make_sleeve("coronary_sinus", {-10, -3, -18}, {2, 4, -27}, 5), 6);
+  builder.add(make_sleeve("superior_vena_cava", {-24, -5, 14}, {-25, -3, 40}, 9), cava_fillet);
+  builder.add(make_sleeve("inferior_vena_cava", {-23, 0, -18}, {-24, 8, -37}, 11), cava_fillet);
+  builder.add(make_sleeve("coronary_sinus", {-10, -3, -18}, {2, 4, -27}, 5), sinus_fillet);
   const RoundCone upper{Vector(-20, -18, 13), Vector(-4, -42, 19), 11, 4.5};
   const RoundCone lower{Vector(-23, -22, 3), Vector(-4, -42, 19), 11, 4.5};
   const auto appendage = [=](const Vector& point) {
-    return smooth_union(sample(upper, point), sample(lower, point), 8);
+    return smooth_union(sample(upper, point), sample(lower, point), right_appendage_fillet);
   };
-  builder.add({"right_atrial_appendage", appendage}, 8, enclose(bounds(upper), bounds(lower)));
+  builder.add({"right_atrial_appendage", appendage}, right_appendage_fillet, enclose(bounds(upper), bounds(lower)));
   builder.open("fossa_ovalis", septum.fossa());
   return builder.finish();
 }
@@ -125,9 +128,9 @@ Chamber make_bachmann_bundle() {
       lay_band(above, {{-32, -20, 19}, {-19, -19, 23}, {-5, -10, 18}, {8, -9, 15}, {20, -8, 16}, {31, -5, 18}},
                {4, 5.5, 5.5, 5.5, 5, 3.5});
   Chamber bundle{{{"bachmann_bundle", above}}, above, {}, widen(band.bounds, 4)};
-  const auto outside = [band](const Vector& point) { return sample(band, point); };
-  const Vector centre = (band.bounds.lower + band.bounds.upper) / 2;
-  bundle.openings.push_back({"bachmann_bundle_margin", {outside, centre, (band.bounds.upper - centre).norm() + 100}});
+  const auto beside = [band](const Vector& point) { return sample(band, point); };
+  const double everywhere = std::numeric_limits<double>::infinity();
+  bundle.openings.push_back({"bachmann_bundle_margin", {beside, Vector::Zero(), everywhere}});
   return bundle;
 }
 

@@ -21,7 +21,7 @@ Value spline(const std::array<Value, 4>& knots, double t) {
 /// The knots around a span; those beyond the ends by reflection.
 template <typename Value>
 std::array<Value, 4> knots_of(const std::vector<Value>& values, std::size_t span) {
-  const Value b = values[span], c = values[span + 1];
+  const Value &b = values[span], &c = values[span + 1];
   const Value a = span > 0 ? values[span - 1] : Value(2 * b - c);
   const Value d = span + 2 < values.size() ? values[span + 2] : Value(2 * c - b);
   return {a, b, c, d};
@@ -33,6 +33,7 @@ Band lay_band(const std::function<Sample(const Vector&)>& function, const std::v
               const std::vector<double>& radii) {
   const ImplicitSurface surface{function, {}, {}};
   std::vector<Vector> knots;
+  knots.reserve(points.size());
   for (const Vector& point : points) knots.push_back(project(surface, point));
   Band band;
   Vector start = knots.front();

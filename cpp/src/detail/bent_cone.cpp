@@ -36,11 +36,8 @@ Sample BentCone::sample(const Vector& point) const {
 }
 
 Sample BentCone::sample_end(const Vector& point) const {
-  const auto sphere = [&](const Vector& centre, double radius) {
-    const double distance = (point - centre).norm();
-    return Sample{distance - radius, (point - centre) / std::max(distance, 1e-9)};
-  };
-  const Sample at_start = sphere(ends_.start, ends_.start_radius), at_end = sphere(ends_.end, ends_.end_radius);
+  const Sample at_start = detail::sample(Ball{ends_.start, ends_.start_radius}, point);
+  const Sample at_end = detail::sample(Ball{ends_.end, ends_.end_radius}, point);
   return at_start.value < at_end.value ? at_start : at_end;
 }
 

@@ -29,6 +29,11 @@ Sample sample(const Ellipsoid& ellipsoid, const Vector& point) {
   return {level / slope, half_gradient / slope - level / (slope * slope * slope) * curvature_term};
 }
 
+Sample sample(const Ball& ball, const Vector& point) {
+  const double distance = (point - ball.centre).norm();
+  return {distance - ball.radius, (point - ball.centre) / std::max(distance, 1e-9)};
+}
+
 Sample sample(const RoundCone& cone, const Vector& point) {
   const Vector axis = cone.axis();
   const double length = (cone.end - cone.start).norm();
@@ -40,12 +45,8 @@ Sample sample(const RoundCone& cone, const Vector& point) {
   const Vector radial = from_start - along * axis;
   const double across = radial.norm();
   const double foot = along * cosine - across * sine;
-  const auto sphere = [&](const Vector& centre, double radius) {
-    const double distance = (point - centre).norm();
-    return Sample{distance - radius, (point - centre) / std::max(distance, 1e-9)};
-  };
-  if (foot < 0) return sphere(cone.start, cone.start_radius);
-  if (foot > cosine * length) return sphere(cone.end, cone.end_radius);
+  if (foot < 0) return sample(Ball{cone.start, cone.start_radius}, point);
+  if (foot > cosine * length) return sample(Ball{cone.end, cone.end_radius}, point);
   return {across * cosine + along * sine - cone.start_radius, cosine / std::max(across, 1e-9) * radial + sine * axis};
 }
 
@@ -79,10 +80,7 @@ Box bounds(const Ellipsoid& ellipsoid) {
 }
 
 Box bounds(const RoundCone& cone) {
-  const auto sphere = [](const Vector& centre, double radius) {
-    return Box{(centre.array() - radius).matrix(), (centre.array() + radius).matrix()};
-  };
-  return enclose(sphere(cone.start, cone.start_radius), sphere(cone.end, cone.end_radius));
+  return enclose(widen({cone.start, cone.start}, cone.start_radius), widen({cone.end, cone.end}, cone.end_radius));
 }
 
 Box enclose(const Box& a, const Box& b) {

@@ -19,6 +19,11 @@ struct Ellipsoid {
   Vector centre, radii;
 };
 
+struct Ball {
+  Vector centre;
+  double radius;
+};
+
 /// The convex hull of two spheres; neither may contain the other.
 struct RoundCone {
   Vector start, end;
@@ -33,6 +38,7 @@ struct HalfSpace {
 };
 
 Sample sample(const Ellipsoid& ellipsoid, const Vector& point);
+Sample sample(const Ball& ball, const Vector& point);
 Sample sample(const RoundCone& cone, const Vector& point);
 Sample sample(const HalfSpace& half_space, const Vector& point);
 
@@ -86,7 +92,7 @@ Box widen(const Box& box, double margin);
 struct ImplicitSurface {
   std::function<Sample(const Vector&)> function;
   std::vector<Cut> cuts;
-  Box bounds;  ///< contains the zero set
+  Box bounds;  ///< contains all of the zero set that the cuts leave, and more
 };
 
 /// The point of the surface that Newton steps along the gradient lead to; exact to rounding near the surface.

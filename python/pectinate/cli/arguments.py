@@ -8,7 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pectinate
-from pectinate.cli import commands, view_command
+from pectinate.cli import commands, demo_command, view_command
 from pectinate.cli.field_arguments import add_field_commands
 from pectinate.cli.shared_arguments import (
     EXIT_CODES,
@@ -104,15 +104,18 @@ def _add_info(subparsers: argparse._SubParsersAction[Parser]) -> None:
 def _add_demo(subparsers: argparse._SubParsersAction[Parser]) -> None:
     parser = subparsers.add_parser(
         "demo",
-        help="place streamlines on an atrium made by pectinate",
-        description="Make an atrium-like surface, place streamlines on it, save and draw them.",
+        help="make both atria with their fibres, and pictures, a page and files of them",
+        description="Make both atria, outside and inside, with fibres after the paper's tables; place streamlines, "
+        "draw them, and write files for solvers and viewers.",
         epilog=EXIT_CODES,
     )
-    parser.set_defaults(run=commands.demo)
+    parser.set_defaults(run=demo_command.demo)
     parser.add_argument(
         "--out", type=Path, default=Path("demo"), metavar="DIR", help="folder to write to (default: %(default)s)"
     )
-    parser.add_argument("--edge-length", type=float, metavar="MM", help="edge length of the surface")
+    parser.add_argument(
+        "--edge-length", type=float, metavar="MM", help="edge length of the surfaces, 0.1 to 2 (default: 1)"
+    )
     _add_placement(parser)
     add_common(parser)
 

@@ -9,7 +9,6 @@ from pathlib import Path
 import pectinate
 from pectinate.cli import report
 from pectinate.cli.files import (
-    OutputError,
     check_figure,
     check_folders,
     check_suffixes,
@@ -19,7 +18,6 @@ from pectinate.cli.files import (
     writing,
 )
 from pectinate.cli.progress import ProgressBar
-from pectinate.datasets import demo_atrium
 from pectinate.errors import InvalidField
 from pectinate.model import Model
 from pectinate.placement import DEFAULTS, Placement
@@ -49,18 +47,6 @@ def info(arguments: argparse.Namespace) -> None:
         report.print_json(summary)
     elif not arguments.quiet:
         report.print_rows(report.surface_rows(summary) + report.topology_rows(summary))
-
-
-def demo(arguments: argparse.Namespace) -> None:
-    """Place streamlines on the demo atrium, save and draw them in a folder."""
-    model = demo_atrium(**given(arguments, {"edge_length": "edge_length"}))
-    try:
-        arguments.out.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise OutputError(str(error)) from error
-    arguments.outputs, arguments.tubes = [arguments.out / "demo_atrium.npz"], []
-    arguments.figure = arguments.out / "demo_atrium.png"
-    _place(model, arguments)
 
 
 def _place(model: Model, arguments: argparse.Namespace) -> None:

@@ -1,7 +1,10 @@
 """Drawings of surfaces with tubes and values on them, offscreen, and of the disk that a surface is mapped to."""
 
+from pectinate.figure.cells import Cell, figure_sheet
 from pectinate.figure.disk import draw_disk
 from pectinate.figure.lines import line_tubes
+from pectinate.figure.parts import Lines, Marker, Part
+from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import render_view
 from pectinate.figure.plots import draw_lengths, draw_spacing
 from pectinate.figure.shading import Style
@@ -12,7 +15,12 @@ from pectinate.figure.views import STANDARD_VIEWS, View, principal_views, standa
 
 __all__ = [
     "STANDARD_VIEWS",
+    "Cell",
     "Layer",
+    "Lines",
+    "Marker",
+    "Part",
+    "PatientAxes",
     "Style",
     "SurfaceValues",
     "View",
@@ -20,6 +28,7 @@ __all__ = [
     "draw_lengths",
     "draw_sheet",
     "draw_spacing",
+    "figure_sheet",
     "line_tubes",
     "principal_views",
     "render_view",

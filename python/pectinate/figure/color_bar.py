@@ -7,7 +7,7 @@ from PIL import Image, ImageDraw
 
 from pectinate.figure.shading import Style
 from pectinate.figure.values import ColorScale, CornerColors
-from pectinate.figure.writing import LETTERS, Rgb, font, ink_color, paper_color
+from pectinate.figure.writing import LETTERS, Rgb, font, ink_color, lay_on, paper_color, upright, write
 
 # Shares of a view's height.
 _BAR_HEIGHT, _BAR_WIDTH, _MARGIN, _TICK = 0.62, 0.04, 0.035, 0.012
@@ -28,37 +28,38 @@ def beside_color_bar(sheet: Image.Image, values: CornerColors, view_height: int,
     style : Style
         Colours of the paper and of what has no value.
     """
-    strip = _strip(values, view_height, sheet.height, style)
-    whole = Image.new("RGB", (sheet.width + strip.width, sheet.height), paper_color(style))
+    strip = _strip(values, view_height, sheet, style)
+    whole = _paper(sheet.mode, (sheet.width + strip.width, sheet.height), style)
     whole.paste(sheet, (0, 0))
     whole.paste(strip, (sheet.width, 0))
     return whole
 
 
-def _strip(values: CornerColors, view_height: int, height: int, style: Style) -> Image.Image:
+def _strip(values: CornerColors, view_height: int, sheet: Image.Image, style: Style) -> Image.Image:
     """Draw the bar with its ticks and its label in a strip of a sheet's height."""
     margin, width, tick = (round(share * view_height) for share in (_MARGIN, _BAR_WIDTH, _TICK))
     letters, ink = font(LETTERS * view_height), ink_color(style)
     ticks = values.scale.ticks()
     texts = [f"{value:.6g}" for value in ticks] + [_MISSING_TEXT] * values.some_missing
     text_width = max((round(letters.getlength(text)) for text in texts), default=0)
-    label = _upright(values.label, view_height, ink, paper_color(style))
+    label = upright(values.label, LETTERS * view_height, ink)
     label_left = margin + width + 2 * tick + text_width + margin
-    strip = Image.new("RGB", (label_left + label.width + margin, height), paper_color(style))
+    strip = _paper(sheet.mode, (label_left + label.width + margin, sheet.height), style)
     draw = ImageDraw.Draw(strip)
-    top, bar_height = bar_rows(view_height, height)
+    top, bar_height = bar_rows(view_height, sheet.height)
     bottom = top + bar_height
     strip.paste(_gradient(values.scale, width, bar_height), (margin, top))
     for value, text in zip(ticks, texts, strict=False):
         share = (value - values.scale.low) / (values.scale.high - values.scale.low)
         y = bottom - 1 - round(share * (bar_height - 1))
         draw.line((margin + width, y, margin + width + tick, y), fill=ink, width=max(1, round(0.15 * tick)))
-        draw.text((margin + width + 2 * tick, y), text, ink, letters, anchor="lm")
+        write(strip, (margin + width + 2 * tick, y), text, ink, LETTERS * view_height, anchor="lm")
     if values.some_missing:
         box = (margin, bottom + margin, margin + width - 1, bottom + margin + width - 1)
         draw.rectangle(box, fill=_bytes(style.no_value_color))
-        draw.text((margin + width + 2 * tick, (box[1] + box[3]) / 2), _MISSING_TEXT, ink, letters, anchor="lm")
-    strip.paste(label, (label_left, top + (bar_height - label.height) // 2))
+        beside = (margin + width + 2 * tick, (box[1] + box[3]) / 2)
+        write(strip, beside, _MISSING_TEXT, ink, LETTERS * view_height, anchor="lm")
+    lay_on(strip, label, (label_left, top + (bar_height - label.height) // 2))
     return strip
 
 
@@ -76,14 +77,9 @@ def _gradient(scale: ColorScale, width: int, height: int) -> Image.Image:
     return Image.fromarray(np.repeat(rows[:, None], width, axis=1))
 
 
-def _upright(text: str, view_height: int, ink: Rgb, paper: Rgb) -> Image.Image:
-    """Write a text from the bottom to the top; an image without width where there is no text."""
-    letters = font(LETTERS * view_height)
-    left, top, right, bottom = (round(side) for side in letters.getbbox(text, anchor="ls"))
-    image = Image.new("RGB", (right - left + 2, bottom - top + 2 if text else 0), paper)
-    if text:
-        ImageDraw.Draw(image).text((1 - left, 1 - top), text, ink, letters, anchor="ls")
-    return image.transpose(Image.Transpose.ROTATE_90)
+def _paper(mode: str, size: tuple[int, int], style: Style) -> Image.Image:
+    """Empty paper, transparent where the mode can be."""
+    return Image.new(mode, size, (*paper_color(style), 0)[: len(mode)])
 
 
 def _bytes(color: tuple[float, float, float]) -> Rgb:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pectinate.errors import InvalidOption, RenderingUnavailable
+from pectinate.errors import RenderingUnavailable
 from pectinate.figure.context import offscreen_context
 
 
@@ -33,27 +33,50 @@ class Patch:
     colors: NDArray[np.floating[Any]]
 
 
+@dataclass(frozen=True)
+class Stage:
+    """Patches that are ready to be drawn again and again; made by `Canvas.load`."""
+
+    scene: Any
+    nearest: float
+    near_plane: float
+    slack: float
+
+
 class Canvas:
     """Draws patches with an orthographic camera; made by `open_canvas`."""
 
     def __init__(self, pyrender: Any, largest_size: int) -> None:
         self._pyrender = pyrender
         self._renderer = pyrender.Renderer(1, 1)
-        self._largest_size = largest_size
+        self.largest_size = largest_size
+
+    def load(self, patches: Sequence[Patch]) -> Stage:
+        """Prepare patches, at least one; nearer ones will hide farther ones."""
+        vertices = [patch.vertices for patch in patches]
+        nearest, farthest = max(v[:, 2].max() for v in vertices), min(v[:, 2].min() for v in vertices)
+        depth = float(nearest - farthest)
+        # Room for rounding at both ends; a flat patch gets some of its width.
+        slack = 0.01 * (depth or max(float(np.ptp(v, axis=0).max()) for v in vertices) or 1.0)
+        scene = self._pyrender.Scene(bg_color=np.zeros(4))
+        scene.add(self._pyrender.Mesh([self._primitive(patch) for patch in patches]))
+        return Stage(scene, float(nearest), depth + 2 * slack, slack)
 
     def draw(
-        self, patches: Sequence[Patch], size: tuple[int, int], mm_per_pixel: float
+        self, stage: Stage, size: tuple[int, int], mm_per_pixel: float, middle: tuple[float, float] = (0.0, 0.0)
     ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         """Draw patches on nothing.
 
         Parameters
         ----------
-        patches : sequence of Patch
-            What to draw; nearer hides farther.
+        stage : Stage
+            What to draw.
         size : tuple of 2 int
-            Width and height in pixels.
+            Width and height in pixels, at most `largest_size`.
         mm_per_pixel : float
             Scale; pixels are square.
+        middle : tuple of 2 float
+            What lies in the middle of the picture: x and y in mm.
 
         Returns
         -------
@@ -61,39 +84,18 @@ class Canvas:
             RGB premultiplied by A, the share of the pixel that is covered.
         depth : (height, width) float32
             Distance in mm behind the nearest vertex; infinite where nothing is drawn.
-
-        Raises
-        ------
-        InvalidOption
-            If the picture is larger than OpenGL can draw.
         """
-        width, height = size
-        if max(size) > self._largest_size:
-            raise InvalidOption(
-                f"a picture of {width} x {height} pixels (with supersampling) is more than the {self._largest_size} "
-                "that OpenGL can draw here: choose a smaller size or less supersampling"
-            )
-        heights = [patch.vertices[:, 2] for patch in patches]
-        nearest, farthest = max(z.max() for z in heights), min(z.min() for z in heights)
-        # Room for rounding at both ends; a flat patch gets a box of the picture's size.
-        slack = 0.01 * (float(nearest - farthest) or mm_per_pixel * max(size))
-        near = float(nearest - farthest) + 2 * slack
-        camera = self._pyrender.OrthographicCamera(1.0, 0.5 * height * mm_per_pixel, znear=near, zfar=2 * near)
+        near = stage.near_plane
+        camera = self._pyrender.OrthographicCamera(1.0, 0.5 * size[1] * mm_per_pixel, znear=near, zfar=2 * near)
         pose = np.eye(4)
-        pose[2, 3] = nearest + slack + near
-        color, depth = self._render(patches, camera, pose, size)
-        return color, _undo_perspective(depth, near) - np.float32(slack)
-
-    def _render(
-        self, patches: Sequence[Patch], camera: Any, pose: NDArray[np.float64], size: tuple[int, int]
-    ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-        scene = self._pyrender.Scene(bg_color=np.zeros(4))
-        scene.add(self._pyrender.Mesh([self._primitive(patch) for patch in patches]))
-        scene.add(camera, pose=pose)
+        pose[:3, 3] = *middle, stage.nearest + stage.slack + near
+        node = stage.scene.add(camera, pose=pose)
         self._renderer.viewport_width, self._renderer.viewport_height = size
         flags = self._pyrender.RenderFlags
-        color, depth = self._renderer.render(scene, flags.FLAT | flags.RGBA | flags.OFFSCREEN | flags.SKIP_CULL_FACES)
-        return color, depth
+        flat = flags.FLAT | flags.RGBA | flags.OFFSCREEN | flags.SKIP_CULL_FACES
+        color, depth = self._renderer.render(stage.scene, flat)
+        stage.scene.remove_node(node)
+        return color, _undo_perspective(depth, near) - np.float32(stage.slack)
 
     def _primitive(self, patch: Patch) -> Any:
         opaque = np.ones((len(patch.vertices), 4), dtype=np.float32)

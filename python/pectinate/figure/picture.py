@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,29 +10,22 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pectinate.errors import InvalidOption
-from pectinate.figure.offscreen import Canvas, open_canvas
+from pectinate.figure.depth_map import DepthMap, draw_depth_map
+from pectinate.figure.frame import Frame, extent, fitting_scale, middle
+from pectinate.figure.offscreen import Canvas, Stage, open_canvas
+from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.shading import VALUE_SHADE, Style, box_downsample, fold_shadow
 from pectinate.figure.shape import Drawing, Layer, Triangles, check_drawing, patches
 from pectinate.figure.values import SurfaceValues
 from pectinate.figure.views import View, resolve_view
 
-MARGIN = 0.03
-"""Least share of a picture's width and height that stays free at each side."""
-
 FOLD_SIZE = 0.035
 """The folds that are darkened: those about this share of the surface's diagonal wide and half as deep."""
 
+TILE = 2048
+"""Pixels, with supersampling, across the tiles that a large picture is drawn in."""
+
 _LARGEST_SUPERSAMPLING = 8
-
-
-@dataclass(frozen=True)
-class Frame:
-    """Where a picture looks: a view, the middle of the picture and its scale."""
-
-    view: View
-    centre: NDArray[np.float64]
-    size: tuple[int, int]
-    mm_per_pixel: float
 
 
 def render_view(  # noqa: PLR0913
@@ -41,7 +35,7 @@ def render_view(  # noqa: PLR0913
     layers: Sequence[Layer] = (),
     surface_values: SurfaceValues | ArrayLike | None = None,
     view: str | View = "anterior",
-    axes: str = "LPS",
+    axes: str | PatientAxes = "LPS",
     size: tuple[int, int] = (700, 700),
     mm_per_pixel: float | None = None,
     supersampling: int = 2,
@@ -64,7 +58,7 @@ def render_view(  # noqa: PLR0913
         Numbers per triangle or vertex that colour the outside of the surface.
     view : str or View
         One of `STANDARD_VIEWS`, "principal", or any `View`.
-    axes : str
+    axes : str or PatientAxes
         Where +x, +y and +z point in the patient, for the standard views.
     size : tuple of 2 int
         Width and height in pixels.
@@ -100,57 +94,75 @@ def render_view(  # noqa: PLR0913
         mm_per_pixel = fitting_scale(extent(points, looking), size)
     frame = Frame(looking, middle(points, looking), size, mm_per_pixel)
     with open_canvas() as canvas:
-        premultiplied = draw_frame(canvas, drawing, frame, supersampling, style)
-    return straight_alpha(premultiplied) if transparent else on_background(premultiplied, style)
+        return draw_frame(canvas, drawing, frame, supersampling, style, transparent=transparent).picture
 
 
-def extent(points: NDArray[np.float64], view: View) -> tuple[float, float]:
-    """Width and height in mm of points seen along a view."""
-    width, height, _ = np.ptp(points @ view.rotation().T, axis=0).tolist()
-    return width, height
+@dataclass(frozen=True)
+class Drawn:
+    """A picture, (h, w, 3) or (h, w, 4) uint8, and what hides what in it."""
+
+    picture: NDArray[np.uint8]
+    frame: Frame
+    nearest: float
+    depth_map: DepthMap
+
+    def sees(self, points: NDArray[np.float64], tolerance: float) -> NDArray[np.bool_]:
+        """Whether points (n, 3) lie within the picture, and no deeper in mm than a tolerance behind what is drawn."""
+        pixels, depth = self.frame.pixels(points), self.nearest - self.frame.seen(points)[:, 2]
+        inside = ((pixels >= 0) & (pixels < self.frame.size)).all(axis=1)
+        return np.asarray(inside & (depth <= self.depth_map.depth_at(pixels) + tolerance))
 
 
-def middle(points: NDArray[np.float64], view: View) -> NDArray[np.float64]:
-    """Middle, (3,) float64 in the coordinates of the points, of their box seen along a view."""
-    rotation = view.rotation()
-    seen = points @ rotation.T
-    return np.asarray(0.5 * (seen.min(axis=0) + seen.max(axis=0)) @ rotation)
+def draw_frame(  # noqa: PLR0913
+    canvas: Canvas,
+    drawing: Drawing,
+    frame: Frame,
+    supersampling: int,
+    style: Style,
+    *,
+    transparent: bool = False,
+    tile: int = TILE,
+) -> Drawn:
+    """Draw one frame, in tiles: however large it is, little more memory than its pixels is needed.
 
-
-def fitting_scale(extent_mm: tuple[float, float], size: tuple[int, int]) -> float:
-    """Scale in mm per pixel at which an extent in mm just fits into a picture with its margin."""
-    check_size(size)
-    scale = max(mm / (pixels * (1 - 2 * MARGIN)) for mm, pixels in zip(extent_mm, size, strict=True))
-    return scale if scale > 0 else 1.0
-
-
-def check_size(size: tuple[int, int]) -> None:
-    """Raise InvalidOption unless a size is two positive whole numbers."""
-    if not all(isinstance(pixels, (int, np.integer)) and pixels > 0 for pixels in size) or len(size) != 2:  # noqa: PLR2004
-        raise InvalidOption(f"size {size}: give the width and the height in pixels, whole numbers above 0")
-
-
-def draw_frame(canvas: Canvas, drawing: Drawing, frame: Frame, supersampling: int, style: Style) -> NDArray[np.float32]:
-    """Draw one frame.
-
-    Returns
-    -------
-    (height, width, 4) float32
-        RGB premultiplied by alpha, all 0 to 1.
+    The size of the tiles does not show.
     """
-    _check(frame, supersampling)
+    if not isinstance(supersampling, int) or not 1 <= supersampling <= _LARGEST_SUPERSAMPLING:
+        raise InvalidOption(f"supersampling {supersampling}: give a whole number from 1 to {_LARGEST_SUPERSAMPLING}")
+    stage = canvas.load(patches(drawing, frame.view, frame.centre, style))
+    fold_size = FOLD_SIZE * drawing.diagonal
+    depth_map = draw_depth_map(canvas, stage, frame, drawing.points, fold_size)
+    darkness = style.fold_darkness * (VALUE_SHADE if drawing.shows_values else 1.0)
     width, height = frame.size
-    fine_size = (width * supersampling, height * supersampling)
-    seen = patches(drawing, frame.view, frame.centre, style)
-    color, depth = canvas.draw(seen, fine_size, frame.mm_per_pixel / supersampling)
-    lit = color.astype(np.float32) / np.float32(255)
-    fold_size = FOLD_SIZE * float(np.linalg.norm(np.ptp(drawing.surface.vertices, axis=0)))
-    darkness = style.fold_darkness * (1.0 if drawing.colors is None else VALUE_SHADE)
-    if darkness > 0 and fold_size > 0:
-        radius = min(max(1, round(0.5 * fold_size / frame.mm_per_pixel)), max(frame.size))
-        shadow = fold_shadow(depth, supersampling, radius, 0.5 * fold_size)
-        lit[:, :, :3] *= (1 - np.float32(darkness) * shadow)[:, :, None]
-    return box_downsample(lit, supersampling)
+    picture = np.empty((height, width, 4 if transparent else 3), dtype=np.uint8)
+    side = max(1, min(tile, canvas.largest_size) // supersampling)
+    for top, left in itertools.product(range(0, height, side), range(0, width, side)):
+        columns, rows = np.arange(left, min(left + side, width)), np.arange(top, min(top + side, height))
+        lit, depth = _draw_tile(canvas, stage, frame, (columns, rows), supersampling)
+        if darkness > 0 and fold_size > 0:
+            shadow = fold_shadow(depth, depth_map.surroundings_at(columns, rows), 0.5 * fold_size)
+            lit[:, :, :3] *= (1 - np.float32(darkness) * shadow)[:, :, None]
+        premultiplied = box_downsample(lit, supersampling)
+        finished = straight_alpha(premultiplied) if transparent else on_background(premultiplied, style)
+        picture[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] = finished
+    return Drawn(picture, frame, stage.nearest, depth_map)
+
+
+def _draw_tile(
+    canvas: Canvas,
+    stage: Stage,
+    frame: Frame,
+    pixels: tuple[NDArray[np.int64], NDArray[np.int64]],
+    supersampling: int,
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Draw some columns and rows of a frame: premultiplied RGBA from 0 to 1, and depth, with supersampling."""
+    middle_x, middle_y = (
+        (0.5 * (some[0] + some[-1] + 1) - 0.5 * whole) * frame.mm_per_pixel
+        for some, whole in zip(pixels, frame.size, strict=True)
+    )
+    size = (len(pixels[0]) * supersampling, len(pixels[1]) * supersampling)
+    color, depth = canvas.draw(stage, size, frame.mm_per_pixel / supersampling, (middle_x, -middle_y))
+    return color.astype(np.float32) / np.float32(255), depth
 
 
 def on_background(premultiplied: NDArray[np.float32], style: Style) -> NDArray[np.uint8]:
@@ -169,11 +181,3 @@ def straight_alpha(premultiplied: NDArray[np.float32]) -> NDArray[np.uint8]:
 
 def _to_bytes(image: NDArray[np.float32]) -> NDArray[np.uint8]:
     return np.rint(np.clip(image, 0, 1) * 255).astype(np.uint8)
-
-
-def _check(frame: Frame, supersampling: int) -> None:
-    check_size(frame.size)
-    if not np.isfinite(frame.mm_per_pixel) or frame.mm_per_pixel <= 0:
-        raise InvalidOption(f"mm_per_pixel {frame.mm_per_pixel}: give a number above 0")
-    if not isinstance(supersampling, int) or not 1 <= supersampling <= _LARGEST_SUPERSAMPLING:
-        raise InvalidOption(f"supersampling {supersampling}: give a whole number from 1 to {_LARGEST_SUPERSAMPLING}")

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pectinate.errors import InvalidOption
+
 Color = tuple[float, float, float]
 
 
@@ -19,6 +21,8 @@ class Style:
     ----------
     surface_color, inside_color, tube_color : tuple of 3 float
         Colour in full light of the surface, of its inside seen through openings, and of the tubes.
+    tract_color : tuple of 3 float
+        Colour in full light of tracts.
     no_value_color : tuple of 3 float
         Colour, where the surface shows values, of what has none.
     background_color : tuple of 3 float
@@ -34,11 +38,19 @@ class Style:
     surface_color: Color = (0.93, 0.90, 0.86)
     inside_color: Color = (0.62, 0.55, 0.53)
     tube_color: Color = (0.10, 0.09, 0.09)
+    tract_color: Color = (0.0, 0.0, 0.0)
     no_value_color: Color = (0.72, 0.72, 0.72)
     background_color: Color = (1.0, 1.0, 1.0)
     tube_gloss: float = 0.2
     fold_darkness: float = 0.45
     edge_darkness: float = 0.35
+
+
+def check_color(color: Color) -> Color:
+    """Return a colour, or raise InvalidOption where it is none."""
+    if len(color) != 3 or not all(0 <= channel <= 1 for channel in color):  # noqa: PLR2004
+        raise InvalidOption(f"color {color}: give red, green and blue, each from 0 to 1")
+    return color
 
 
 VALUE_SHADE = 0.6
@@ -137,17 +149,36 @@ def light_settings() -> dict[str, Any]:
     }
 
 
-def fold_shadow(depth: NDArray[np.float32], block: int, radius: int, reach: float) -> NDArray[np.float32]:
-    """How far each pixel lies below its surroundings: the difference of the depth map to its blurred self.
+def blurred_depth(depth: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
+    """Mean of a depth map around each pixel.
+
+    Parameters
+    ----------
+    depth : (h, w) float32
+        Depth in mm; infinite where there is nothing, which takes no part in the mean.
+    radius : int
+        Half width of the blur in pixels.
+
+    Returns
+    -------
+    (h, w) float32
+    """
+    seen = np.isfinite(depth)
+    weights, sums = seen.astype(np.float32), np.where(seen, depth, np.float32(0))
+    for _ in range(3):
+        weights, sums = _box_blur(weights, radius), _box_blur(sums, radius)
+    return np.asarray(sums / np.maximum(weights, np.finfo(np.float32).tiny))
+
+
+def fold_shadow(depth: NDArray[np.float32], surroundings: NDArray[np.float32], reach: float) -> NDArray[np.float32]:
+    """How far each sample lies below its surroundings.
 
     Parameters
     ----------
     depth : (block * h, block * w) float32
-        Depth in mm; infinite where there is nothing, which takes no part in the blur.
-    block : int
-        Pixels across one pixel of the finished picture; the blur is computed on the finished pixels.
-    radius : int
-        Half width of the blur in finished pixels.
+        Depth in mm; infinite where there is nothing.
+    surroundings : (h, w) float32
+        Mean depth around each pixel.
     reach : float
         Difference in mm that counts as 1.
 
@@ -156,14 +187,11 @@ def fold_shadow(depth: NDArray[np.float32], block: int, radius: int, reach: floa
     (block * h, block * w) float32
         From 0 (level with its surroundings or above them) to 1.
     """
+    block = len(depth) // len(surroundings)
     seen = np.isfinite(depth)
-    filled = np.where(seen, depth, np.float32(0))
-    weights, sums = box_downsample(seen, block), box_downsample(filled, block)
-    for _ in range(3):
-        weights, sums = _box_blur(weights, radius), _box_blur(sums, radius)
-    mean = sums / np.maximum(weights, np.finfo(np.float32).tiny)
-    below = filled - np.repeat(np.repeat(mean, block, axis=0), block, axis=1)
-    return np.where(seen, np.clip(below / reach, 0.0, 1.0), 0.0).astype(np.float32)
+    mean = np.repeat(np.repeat(surroundings, block, axis=0), block, axis=1)
+    below = np.where(seen, depth, mean) - mean
+    return np.asarray(np.clip(below / np.float32(reach), 0.0, 1.0))
 
 
 def box_downsample(image: NDArray[np.generic], block: int) -> NDArray[np.float32]:

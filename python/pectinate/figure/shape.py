@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pectinate.errors import InvalidMesh, InvalidOption
+from pectinate.errors import InvalidMesh
 from pectinate.figure.offscreen import Patch
 from pectinate.figure.shading import (
     Color,
     Style,
+    check_color,
     gloss,
     light,
     shaded,
@@ -53,17 +54,36 @@ class Layer:
 
 
 @dataclass(frozen=True)
-class Drawing:
-    """What pictures show: a surface, the colours of its values or None, and tubes with the colour of each."""
+class Surface:
+    """A surface with its colour in full light, or the colours of its values."""
 
-    surface: Shape
-    colors: CornerColors | None
+    shape: Shape
+    color: Color
+    colors: CornerColors | None = None
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """What pictures show: surfaces, and tubes with the colour of each."""
+
+    surfaces: tuple[Surface, ...]
     tubes: tuple[tuple[Shape, Color], ...]
 
     @property
     def points(self) -> NDArray[np.float64]:
         """Every vertex that is drawn, (n, 3) float64 in mm."""
-        return np.concatenate([self.surface.vertices, *(shape.vertices for shape, _ in self.tubes)])
+        shapes = [surface.shape for surface in self.surfaces] + [shape for shape, _ in self.tubes]
+        return np.concatenate([shape.vertices for shape in shapes])
+
+    @property
+    def shows_values(self) -> bool:
+        """Whether a surface shows values."""
+        return any(surface.colors is not None for surface in self.surfaces)
+
+    @property
+    def diagonal(self) -> float:
+        """Of the box of the largest surface, mm."""
+        return max(float(np.linalg.norm(np.ptp(surface.shape.vertices, axis=0))) for surface in self.surfaces)
 
 
 def check_drawing(
@@ -82,22 +102,33 @@ def check_drawing(
     InvalidOption
         If a colour is none, or the values break the rules of `corner_colors`.
     """
-    shape = check_shape("surface", surface)
+    given = [] if tubes is None else [Layer(tubes, style.tube_color)]
+    whole = check_surface("surface", surface, style.surface_color, surface_values, style)
+    return Drawing((whole,), check_layers([*given, *layers]))
+
+
+def check_surface(
+    name: str,
+    triangles: Triangles,
+    color: Color,
+    surface_values: SurfaceValues | ArrayLike | None,
+    style: Style,
+) -> Surface:
+    """Check a surface, which must have triangles, and give its values their colours."""
+    shape = check_shape(name, triangles)
     if shape is None:
-        raise InvalidMesh("the surface has no triangles: there is nothing to draw")
+        raise InvalidMesh(f"the {name} has no triangles: there is nothing to draw")
     colors = None
     if surface_values is not None:
-        vertex_count = len(np.asarray(surface[0]))
-        colors = corner_colors(surface_values, np.asarray(surface[1]), vertex_count, style.no_value_color)
-    given = [] if tubes is None else [Layer(tubes, style.tube_color)]
-    checked = ((check_shape("tubes", layer.triangles), _check_color(layer.color)) for layer in [*given, *layers])
-    return Drawing(shape, colors, tuple((tube, color) for tube, color in checked if tube is not None))
+        vertex_count = len(np.asarray(triangles[0]))
+        colors = corner_colors(surface_values, np.asarray(triangles[1]), vertex_count, style.no_value_color)
+    return Surface(shape, color, colors)
 
 
-def _check_color(color: Color) -> Color:
-    if len(color) != 3 or not all(0 <= channel <= 1 for channel in color):  # noqa: PLR2004
-        raise InvalidOption(f"color {color}: give red, green and blue, each from 0 to 1")
-    return color
+def check_layers(layers: Sequence[Layer]) -> tuple[tuple[Shape, Color], ...]:
+    """Check tubes and their colours; those without triangles are left out."""
+    checked = ((check_shape("tubes", layer.triangles), check_color(layer.color)) for layer in layers)
+    return tuple((tube, color) for tube, color in checked if tube is not None)
 
 
 def check_shape(name: str, arrays: Triangles) -> Shape | None:
@@ -128,22 +159,24 @@ def check_shape(name: str, arrays: Triangles) -> Shape | None:
 
 def patches(drawing: Drawing, view: View, centre: NDArray[np.float64], style: Style) -> list[Patch]:
     """All that is seen along a view, relative to the middle of the picture."""
-    result = _surface_patches(drawing, view, centre, style)
+    result = []
+    for surface in drawing.surfaces:
+        result += _surface_patches(surface, view, centre, style)
     for shape, color in drawing.tubes:
         result += _tube_patches(shape, color, view, centre, style)
     return result
 
 
-def _surface_patches(drawing: Drawing, view: View, centre: NDArray[np.float64], style: Style) -> list[Patch]:
-    """The surface: outside and inside as patches of their own colours."""
-    shape, rotation = drawing.surface, view.rotation()
+def _surface_patches(surface: Surface, view: View, centre: NDArray[np.float64], style: Style) -> list[Patch]:
+    """A surface: outside and inside as patches of their own colours."""
+    shape, rotation = surface.shape, view.rotation()
     vertices, normals = (shape.vertices - centre) @ rotation.T, shape.normals @ rotation.T
     faces_viewer = triangle_normals(vertices, shape.triangles)[:, 2] >= 0
     facing = shape.triangles[faces_viewer]
-    if drawing.colors is None:
-        outside = Patch(vertices, facing, shaded(style.surface_color, light(normals, style.edge_darkness)))
+    if surface.colors is None:
+        outside = Patch(vertices, facing, shaded(surface.color, light(normals, style.edge_darkness)))
     else:
-        corners, colors = facing.ravel(), drawing.colors.colors[faces_viewer].reshape(-1, 3)
+        corners, colors = facing.ravel(), surface.colors.colors[faces_viewer].reshape(-1, 3)
         lit = shaded(colors, value_light(normals[corners], style.edge_darkness))
         # Each triangle has corners of its own, whose colours it does not share with its neighbours.
         outside = Patch(vertices[corners], np.arange(len(corners)).reshape(-1, 3), lit)

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -96,6 +97,12 @@ def corner_colors(
     low, high = given.value_range or range_of(values[finite])
     scale = ColorScale(given.colormap, float(low), float(high))
     return CornerColors(scale.colors(values, missing), scale, given.label, not finite.all())
+
+
+def joined_scale(colors: Sequence[CornerColors]) -> CornerColors | None:
+    """What one colour bar explains, of surfaces that share a scale; None without any."""
+    some_missing = any(one.some_missing for one in colors)
+    return replace(colors[0], some_missing=some_missing) if colors else None
 
 
 def corner_values(values: ArrayLike, triangles: NDArray[np.int64], vertex_count: int) -> NDArray[np.float64]:

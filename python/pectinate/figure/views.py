@@ -10,10 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pectinate.errors import InvalidOption
-
-_PATIENT_DIRECTIONS = MappingProxyType(
-    {"L": (1, 0, 0), "R": (-1, 0, 0), "P": (0, 1, 0), "A": (0, -1, 0), "S": (0, 0, 1), "I": (0, 0, -1)}
-)
+from pectinate.figure.patient_axes import PATIENT_DIRECTIONS, PatientAxes, patient_to_vertices
 
 # Looking direction and the direction that points up in the picture. Superior and inferior are the anterior view tipped
 # forwards and backwards, so that the patient's left stays on the viewer's right in all three.
@@ -80,15 +77,16 @@ class View:
         return np.asarray(rows / np.linalg.norm(rows, axis=1, keepdims=True))
 
 
-def standard_view(name: str, axes: str = "LPS") -> View:
+def standard_view(name: str, axes: str | PatientAxes = "LPS") -> View:
     """One of the six anatomical views.
 
     Parameters
     ----------
     name : str
         One of `STANDARD_VIEWS`. The anterior view has the patient's left on the viewer's right.
-    axes : str
+    axes : str or PatientAxes
         Where +x, +y and +z point in the patient, one letter each of L/R, A/P, S/I; "LPS" is the convention of DICOM.
+        Or the directions of the patient, for a surface in any pose.
 
     Raises
     ------
@@ -97,8 +95,8 @@ def standard_view(name: str, axes: str = "LPS") -> View:
     """
     if name not in _LOOKING_AND_UP:
         raise InvalidOption(f"unknown view '{name}': choose one of {', '.join(STANDARD_VIEWS)}, principal, or a View")
-    to_vertices = _patient_to_vertices(axes)
-    direction, up = (to_vertices @ _PATIENT_DIRECTIONS[letter] for letter in _LOOKING_AND_UP[name])
+    to_vertices = patient_to_vertices(axes)
+    direction, up = (to_vertices @ PATIENT_DIRECTIONS[letter] for letter in _LOOKING_AND_UP[name])
     return _view(name, direction, up)
 
 
@@ -129,23 +127,11 @@ def principal_views(vertices: ArrayLike) -> tuple[View, ...]:
     return tuple(_view(name, direction, up) for name, (direction, up) in looking_and_up.items())
 
 
-def resolve_view(view: str | View, vertices: ArrayLike, axes: str = "LPS") -> View:
+def resolve_view(view: str | View, vertices: ArrayLike, axes: str | PatientAxes = "LPS") -> View:
     """The `View` that a name stands for: itself, a standard view, or "principal" (the first principal view)."""
     if isinstance(view, View):
         return view
     return principal_views(vertices)[0] if view == "principal" else standard_view(view, axes)
-
-
-def _patient_to_vertices(axes: str) -> NDArray[np.float64]:
-    """Matrix from (left, posterior, superior) to the coordinates of the vertices."""
-    letters = axes.upper()
-    if len(letters) == len("LPS") and all(letter in _PATIENT_DIRECTIONS for letter in letters):
-        matrix = np.array([_PATIENT_DIRECTIONS[letter] for letter in letters], dtype=np.float64)
-        if np.linalg.det(matrix) > 0:
-            return matrix
-    raise InvalidOption(
-        f"axes '{axes}' are not right-handed patient axes: give where +x, +y and +z point, such as LPS, RAS or SLP"
-    )
 
 
 def _principal_axes(points: NDArray[np.float64]) -> NDArray[np.float64]:

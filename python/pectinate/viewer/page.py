@@ -15,10 +15,11 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
-from pectinate.errors import InvalidFile, InvalidOption
+from pectinate.errors import InvalidFile, InvalidOption, MissingDependency
+from pectinate.figure.parts import Marker, Part
+from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.shading import Style
 from pectinate.figure.views import STANDARD_VIEWS, View
-from pectinate.viewer.parts import Marker, Part
 from pectinate.viewer.scene import describe_scene
 from pectinate.viewer.three import three_js
 
@@ -46,7 +47,7 @@ class Page:
         Lines below the title.
     views : sequence of str or View
         A button for each; the page begins with the first.
-    axes : str
+    axes : str or PatientAxes
         Where +x, +y and +z point in the patient, for the standard views.
     shown_values : str, optional
         Name of the values that are shown at first; by default the first ones.
@@ -69,7 +70,7 @@ class Page:
         title: str = "",
         notes: Sequence[str] = (),
         views: Sequence[str | View] = STANDARD_VIEWS,
-        axes: str = "LPS",
+        axes: str | PatientAxes = "LPS",
         shown_values: str | None = None,
         style: Style = Style(),  # noqa: B008  (immutable)
     ) -> None:
@@ -119,12 +120,20 @@ class Page:
             raise InvalidFile.at(path, f"cannot be written ({error.strerror})", "check the folder") from error
 
     def show(self) -> Page:
-        """Open the page in the browser, from a temporary file; in a notebook only return it, to be displayed there."""
+        """Open the page in the browser, from a temporary file; in a notebook only return it, to be displayed there.
+
+        Raises
+        ------
+        MissingDependency
+            There is no browser.
+        """
         if not _in_notebook():
             with tempfile.NamedTemporaryFile("w", suffix=".html", prefix="pectinate-", delete=False) as file:
                 path = Path(file.name)
             self.save(path)
-            webbrowser.open(path.as_uri())
+            if not webbrowser.open(path.as_uri()):
+                path.unlink()
+                raise MissingDependency("no browser could be opened: save the page as a file, and open that")
         return self
 
 

@@ -10,7 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pectinate.errors import InvalidOption
-from pectinate.figure.picture import FOLD_SIZE, MARGIN
+from pectinate.figure.frame import MARGIN
+from pectinate.figure.parts import Lines, Marker, Part, nearest_parts, used_vertices
+from pectinate.figure.patient_axes import PatientAxes
+from pectinate.figure.picture import FOLD_SIZE
 from pectinate.figure.shading import Style, light_settings
 from pectinate.figure.values import ColorScale, SurfaceValues, corner_values, range_of
 from pectinate.figure.views import View, resolve_view
@@ -22,7 +25,6 @@ from pectinate.viewer.encoding import (
     quantized_points,
     quantized_values,
 )
-from pectinate.viewer.parts import Lines, Marker, Part
 
 # Tubes get a ring every so many radii; closer ones do not show.
 _RING_SPACING = 1.5
@@ -32,7 +34,11 @@ _COLOR_COUNT = 256
 
 
 def describe_scene(
-    parts: Sequence[Part], markers: Sequence[Marker], views: Sequence[str | View], axes: str, style: Style
+    parts: Sequence[Part],
+    markers: Sequence[Marker],
+    views: Sequence[str | View],
+    axes: str | PatientAxes,
+    style: Style,
 ) -> tuple[dict[str, Any], ArrayPack]:
     """Describe what a page shows.
 
@@ -54,18 +60,18 @@ def describe_scene(
         raise InvalidOption("there is nothing to show: give at least one part")
     if not views:
         raise InvalidOption("views is empty: give at least one")
-    vertices = [_used_vertices(part) for part in parts]
+    vertices = [part.placed(used_vertices(part)) for part in parts]
     points = np.concatenate(vertices)
     pack = ArrayPack()
     scales = _scales(parts)
     scene = {
-        "parts": [_part(part, scales, pack) for part in parts],
-        "markers": [_marker(marker, vertices) for marker in markers],
+        "parts": [_part(part, scales, pack, style) for part in parts],
+        "markers": _markers(markers, parts),
         "views": [_view(resolve_view(view, points, axes)) for view in views],
         "scales": [_scale(name, scale, label, style) for name, (scale, label) in scales.items()],
         "style": _style(style),
         "light": light_settings(),
-        "fold_size": FOLD_SIZE * float(np.linalg.norm(np.ptp(points, axis=0))),
+        "fold_size": FOLD_SIZE * max(float(np.linalg.norm(np.ptp(some, axis=0))) for some in vertices),
         "margin": MARGIN,
     }
     return scene, pack
@@ -98,13 +104,8 @@ def resampled(lines: Lines) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     return np.column_stack([np.interp(samples, arc, lines.points[:, axis]) for axis in range(3)]), counts
 
 
-def _used_vertices(part: Part) -> NDArray[np.float64]:
-    vertices, triangles = np.asarray(part.surface[0], dtype=np.float64), np.asarray(part.surface[1])
-    return np.asarray(vertices[np.unique(triangles)])
-
-
-def _part(part: Part, scales: dict[str, tuple[ColorScale, str]], pack: ArrayPack) -> dict[str, Any]:
-    vertices, triangles = np.asarray(part.surface[0], dtype=np.float64), np.asarray(part.surface[1])
+def _part(part: Part, scales: dict[str, tuple[ColorScale, str]], pack: ArrayPack, style: Style) -> dict[str, Any]:
+    vertices, triangles = part.placed(part.surface[0]), np.asarray(part.surface[1])
     triangle_order, vertex_order = coherent_order(vertices, triangles)
     rank = np.zeros(len(vertices), dtype=np.int64)
     rank[vertex_order] = np.arange(len(vertex_order))
@@ -124,17 +125,18 @@ def _part(part: Part, scales: dict[str, tuple[ColorScale, str]], pack: ArrayPack
         "name": part.name,
         "visible": part.visible,
         "surface": surface,
+        "surface_color": style.surface_color if part.surface_color is None else part.surface_color,
         "values": values,
-        "streamlines": _lines(part.streamlines, pack),
-        "tracts": _lines(part.tracts, pack),
+        "streamlines": _lines(part.streamlines, part, pack),
+        "tracts": _lines(part.tracts, part, pack),
     }
 
 
-def _lines(lines: Lines | None, pack: ArrayPack) -> dict[str, Any] | None:
+def _lines(lines: Lines | None, part: Part, pack: ArrayPack) -> dict[str, Any] | None:
     if lines is None or len(lines.offsets) < 2:  # noqa: PLR2004
         return None
     points, counts = resampled(lines)
-    positions, place = quantized_points(points)
+    positions, place = quantized_points(part.placed(points))
     return place | {
         "positions": pack.add(positions, differences=2),
         "counts": pack.add(counts.astype(np.uint32)),
@@ -177,11 +179,12 @@ def _scale(name: str, scale: ColorScale, label: str, style: Style) -> dict[str, 
     }
 
 
-def _marker(marker: Marker, vertices: Sequence[NDArray[np.float64]]) -> dict[str, Any]:
-    """A marker, and the part that it is shown with: the one with the nearest vertex."""
-    place = np.asarray(marker.position, dtype=np.float64)
-    distances = [np.linalg.norm(points - place, axis=1).min() for points in vertices]
-    return {"position": place.tolist(), "text": marker.text, "part": int(np.argmin(distances))}
+def _markers(markers: Sequence[Marker], parts: Sequence[Part]) -> list[dict[str, Any]]:
+    """Markers, each with the part that it is shown with."""
+    return [
+        {"position": parts[part].placed([marker.position])[0].tolist(), "text": marker.text, "part": int(part)}
+        for marker, part in zip(markers, nearest_parts(markers, parts), strict=True)
+    ]
 
 
 def _view(view: View) -> dict[str, Any]:
@@ -190,10 +193,9 @@ def _view(view: View) -> dict[str, Any]:
 
 def _style(style: Style) -> dict[str, Any]:
     return {
-        "surface_color": style.surface_color,
         "inside_color": style.inside_color,
         "tube_color": style.tube_color,
-        "tract_color": (0.0, 0.0, 0.0),
+        "tract_color": style.tract_color,
         "no_value_color": style.no_value_color,
         "background_color": style.background_color,
         "ink_color": [channel / 255 for channel in ink_color(style)],

@@ -38,4 +38,4 @@ def three_js() -> str:
 
 
 def _missing() -> MissingDependency:
-    return MissingDependency("this trimesh carries no three.js; install it with: pip install 'trimesh>=4,<6'")
+    return MissingDependency("this trimesh carries no three.js; install it with: pip install 'trimesh>=4.12'")

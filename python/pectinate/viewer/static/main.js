@@ -43,7 +43,7 @@ class Viewer {
       plain,
       colored: null,
       values: part.values.map((values) => ({ ...values, steps: unpack(bytes, values.steps) })),
-      mesh: this.picture.addSurface(plain),
+      mesh: this.picture.addSurface(plain, part.surface_color),
       streamlines: tubes(part.streamlines, style.tube_color),
       tracts: tubes(part.tracts, style.tract_color),
       radius: part.streamlines ? part.streamlines.radius : 0,
@@ -234,6 +234,7 @@ async function start() {
   viewer.look(0);
   followPointers(canvas, viewer.view, () => viewer.requestDraw());
   window.addEventListener('resize', () => viewer.requestDraw());
+  canvas.addEventListener('webglcontextrestored', () => viewer.requestDraw());
   viewer.draw(screenRatio());
   message.hidden = true;
   window.pectinate = viewer;

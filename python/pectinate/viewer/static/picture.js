@@ -29,8 +29,8 @@ class Picture {
     this.blurQuad.add(quad);
   }
 
-  addSurface(geometry) {
-    const { surface_color: outside, inside_color: inside } = this.scene.style;
+  addSurface(geometry, outside) {
+    const { inside_color: inside } = this.scene.style;
     return this.add(geometry, material(SURFACE_VERTEX, SURFACE_FRAGMENT, {
       ...this.uniforms, surfaceColor: { value: outside }, insideColor: { value: inside }, showsValues: { value: false },
     }, THREE.DoubleSide, this.defines()), [0, SURFACE_LAYER]);

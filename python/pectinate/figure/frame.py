@@ -1,0 +1,73 @@
+"""Where a picture looks, and where in it a place in space is seen."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pectinate.errors import InvalidOption
+from pectinate.figure.views import View
+
+MARGIN = 0.03
+"""Least share of a picture's width and height that stays free at each side."""
+
+# A picture's pixels at most: 1.5 GB, and the most that most programs open.
+_MOST_PIXELS, _LONGEST_SIDE = 500_000_000, 65_500
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Where a picture looks: a view, the middle of the picture and its scale."""
+
+    view: View
+    centre: NDArray[np.float64]
+    size: tuple[int, int]
+    mm_per_pixel: float
+
+    def __post_init__(self) -> None:
+        check_size(self.size)
+        if not np.isfinite(self.mm_per_pixel) or self.mm_per_pixel <= 0:
+            raise InvalidOption(f"mm_per_pixel {self.mm_per_pixel}: give a number above 0")
+
+    def seen(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Points (n, 3) relative to the middle of the picture: right, up and towards the viewer, (n, 3) in mm."""
+        return np.asarray((points - self.centre) @ self.view.rotation().T)
+
+    def pixels(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Where points (n, 3) are seen, (n, 2) float64: to the right and down from the picture's upper left corner."""
+        across = self.seen(points)[:, :2] * (1, -1) / self.mm_per_pixel
+        return np.asarray(across + 0.5 * np.array(self.size))
+
+
+def extent(points: NDArray[np.float64], view: View) -> tuple[float, float]:
+    """Width and height in mm of points seen along a view."""
+    width, height, _ = np.ptp(points @ view.rotation().T, axis=0).tolist()
+    return width, height
+
+
+def middle(points: NDArray[np.float64], view: View) -> NDArray[np.float64]:
+    """Middle, (3,) float64 in the coordinates of the points, of their box seen along a view."""
+    rotation = view.rotation()
+    seen = points @ rotation.T
+    return np.asarray(0.5 * (seen.min(axis=0) + seen.max(axis=0)) @ rotation)
+
+
+def fitting_scale(extent_mm: tuple[float, float], size: tuple[int, int]) -> float:
+    """Scale in mm per pixel at which an extent in mm just fits into a picture with its margin."""
+    check_size(size)
+    scale = max(mm / (pixels * (1 - 2 * MARGIN)) for mm, pixels in zip(extent_mm, size, strict=True))
+    return scale if scale > 0 else 1.0
+
+
+def check_size(size: tuple[int, int]) -> None:
+    """Raise InvalidOption unless a size is two positive whole numbers of a picture that can be had."""
+    if not all(isinstance(pixels, (int, np.integer)) and pixels > 0 for pixels in size) or len(size) != 2:  # noqa: PLR2004
+        raise InvalidOption(f"size {size}: give the width and the height in pixels, whole numbers above 0")
+    width, height = (int(pixels) for pixels in size)
+    if max(width, height) > _LONGEST_SIDE or width * height > _MOST_PIXELS:
+        raise InvalidOption(
+            f"a picture of {width} x {height} pixels is more than can be drawn: choose at most {_LONGEST_SIDE} a side "
+            f"and {_MOST_PIXELS:,} in all"
+        )
