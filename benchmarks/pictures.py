@@ -1,7 +1,8 @@
 """Draw the pictures of the documentation: `python benchmarks/pictures.py`, or `make pictures`.
 
-The figures are those of the paper: the fibres of both atria (Fig. 8) and, on the demo atrium, how the reference orientation comes about (Fig. 3), how a few
-tracts make a field step by step (Fig. 4), what noise does to streamlines, and smoothing to noise (Fig. 10).
+The figures are those of the paper: the fibres of both atria (Fig. 8) and, on the demo atrium, how the reference
+orientation comes about (Fig. 3), how a few tracts make a field step by step (Fig. 4), what noise does to streamlines,
+and smoothing to noise (Fig. 10).
 """
 
 from __future__ import annotations

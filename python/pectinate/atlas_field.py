@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pectinate import _core
+from pectinate.checks import one_of, quoted, real, text
 from pectinate.correspondence import Correspondence, correspond, suggestions
 from pectinate.datasets import atrial_surface, atrial_tracts
 from pectinate.errors import InvalidOption
@@ -61,8 +62,8 @@ class CarriedTracts:
 
 def carry_tracts(
     tracts: TractSet,
-    source: Model,
-    target: Model,
+    source: Any,
+    target: Any,
     *,
     maximum_distance: float | None = None,
 ) -> CarriedTracts:
@@ -73,7 +74,7 @@ def carry_tracts(
     tracts
         Drawn on the source; the names of their loops are known to it, or are added.
     source, target
-        Models with at least three loop names in common.
+        Models, or anything that `pectinate.load` takes, with at least three loop names in common.
     maximum_distance
         mm: tracts that end up farther from the target are left out; by default a tenth of its bounding box's diagonal.
 
@@ -83,15 +84,15 @@ def carry_tracts(
         As in `pectinate.correspond`; a distance that is not positive; a condition of a loop that the source does not
         have, or a tract that does not lie on it.
     """
-    limit = _FARTHEST * target.mesh.bounding_box_diagonal if maximum_distance is None else maximum_distance
-    if not limit > 0:
-        raise InvalidOption(f"maximum_distance is {maximum_distance}, but must be positive, mm")
-    source = source.with_loop_points(tracts.loops)
-    found = correspond(source, target)
+    if not isinstance(tracts, TractSet):
+        raise TypeError(f"tracts is {quoted(tracts)}, but must be a TractSet")
+    bare = load(target)
+    limit = _limit(maximum_distance, bare)
+    found = correspond(load(source).with_loop_points(tracts.loops), bare)
     conditions, missing = _conditions(tracts, found)
     carried, lost = _carried(tracts.tracts, found, limit)
-    loops = {name: target.data.loop_points[name] for name in found.loops}
-    result = TractSet(carried, conditions, loops, SurfaceIdentity.of(target))
+    loops = {name: bare.data.loop_points[name] for name in found.loops}
+    result = TractSet(carried, conditions, loops, SurfaceIdentity.of(bare))
     return CarriedTracts(result, found, (*missing, *lost))
 
 
@@ -137,9 +138,10 @@ def atlas(
     InvalidFile
         The file of loops is missing or malformed.
     """
-    given = loops if isinstance(loops, Mapping) else read_loops(loops)
-    points = {name.replace("_", " "): three_numbers(at, f"the point of {name!r}") for name, at in given.items()}
+    points = _loop_points(loops)
+    one_of(layer, "layer", tuple(_core.AtrialLayer.__members__))
     chosen = _chamber(tuple(points)) if chamber is None else chamber
+    one_of(chosen, "chamber", _CHAMBERS)
     built_in = _built_in(chosen, layer)
     _check_names(tuple(points), built_in, chosen)
     bare = load(surface).with_loop_points(points)
@@ -147,6 +149,28 @@ def atlas(
     carried = carry_tracts(tracts, built_in, bare, maximum_distance=maximum_distance)
     made = interpolate(bare, carried.tracts, **options)
     return replace(made, notes=(*made.notes, *carried.notes))
+
+
+def _loop_points(loops: Any) -> dict[str, NDArray[np.float64]]:
+    if isinstance(loops, (str, os.PathLike)):
+        given: Mapping[str, Any] = read_loops(loops)
+    elif isinstance(loops, Mapping):
+        given = loops
+    else:
+        raise TypeError(f"loops is {quoted(loops)}, but must be a file, or a dict of a point for each name")
+    return {
+        text(name, "a name in loops").replace("_", " "): three_numbers(at, f"the point of loop {name!r}")
+        for name, at in given.items()
+    }
+
+
+def _limit(maximum_distance: Any, target: Model) -> float:
+    if maximum_distance is None:
+        return float(_FARTHEST * target.mesh.bounding_box_diagonal)
+    limit = real(maximum_distance, "maximum_distance")
+    if not limit > 0:
+        raise InvalidOption(f"maximum_distance is {limit}, but must be positive, mm")
+    return limit
 
 
 @cache
@@ -160,11 +184,9 @@ def _chamber(names: tuple[str, ...]) -> str:
     fitting = [chamber for chamber, its in known.items() if set(names) <= set(its)]
     if len(fitting) == 1:
         return fitting[0]
-    listed = "; ".join(f"{chamber}: {', '.join(map(repr, its))}" for chamber, its in known.items())
+    listed = "; ".join(f"{chamber}: {', '.join(its)}" for chamber, its in known.items())
     close = suggestions(names, [name for its in known.values() for name in its])
-    raise InvalidOption(
-        f"the names {', '.join(map(repr, names)) or '(none)'} do not tell the chamber; there are {listed}{close}"
-    )
+    raise InvalidOption(f"the names of the loops ({', '.join(names)}) do not tell the chamber; {listed}{close}")
 
 
 def _check_names(names: tuple[str, ...], built_in: Model, chamber: str) -> None:

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pectinate import _core
 from pectinate.errors import InvalidOption
+from pectinate.io import load
 from pectinate.model import Model
 
 _LEAST_LOOPS = 3
@@ -64,7 +65,7 @@ class Correspondence:
         }
 
 
-def correspond(source: Model, target: Model) -> Correspondence:
+def correspond(source: Any, target: Any) -> Correspondence:
     """Bring one surface onto another by the loops that have the same names.
 
     The centres of these loops, a point one radius in front of each and the centres of both surfaces begin it; then,
@@ -74,7 +75,8 @@ def correspond(source: Model, target: Model) -> Correspondence:
     Parameters
     ----------
     source, target
-        Models with at least three loop names in common, see `Model.with_loop_points`.
+        Models, or anything that `pectinate.load` takes, with at least three loop names in common; see
+        `Model.with_loop_points`.
 
     Raises
     ------
@@ -82,6 +84,7 @@ def correspond(source: Model, target: Model) -> Correspondence:
         Too few names in common, two names for one loop, or names that turn the surface inside out, because left and
         right are exchanged.
     """
+    source, target = load(source), load(target)
     names = common_loops(source, target)
     sides = [_loop_landmarks(model, names) for model in (source, target)]
     pairs = np.stack(sides, axis=1)
