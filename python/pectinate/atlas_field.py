@@ -25,6 +25,7 @@ from pectinate.model import Model
 from pectinate.tracts import BoundaryCondition, SurfaceIdentity, Tract, TractSet
 
 _FARTHEST = 0.1  # of the target's diagonal
+_LONGEST_DETOUR = 2.0  # over the straight distance
 _SPACING = 3.0  # mm, of the carried tracts' points
 _EDGE_LENGTH = 2.0  # mm, of the built-in atrium: only its shape matters
 _CHAMBERS = ("left_atrium", "right_atrium")
@@ -224,9 +225,12 @@ def _carried(tracts: tuple[Tract, ...], found: Correspondence, limit: float) -> 
             lost.append(f"{what}: it came to lie {distances.max():.1f} mm from the surface")
             continue
         try:
-            target.make_constraints([_core.Tract(nearest, name=tract.name)])
+            curve = target.make_constraints([_core.Tract(nearest, name=tract.name)]).tracts[0]
         except InvalidOption as error:
             lost.append(f"{what}: {error}")
+            continue
+        if curve.greatest_detour > _LONGEST_DETOUR:
+            lost.append(f"{what}: between two of its points the surface is {curve.greatest_detour:.1f} times as long")
             continue
         kept.append(replace(tract, points=nearest))
     return tuple(kept), lost

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,11 @@ WRONG: tuple[Any, ...] = (
     lambda: None,
 )
 WRONG_OR_NUMBER = (*WRONG, 3, 2.5)
+
+
+@cache
+def coarse_atrium() -> pectinate.Model:
+    return pectinate.datasets.atrial_surface("left_atrium", edge_length=2)
 
 
 def set_condition(**changed: Any) -> None:
@@ -92,9 +98,11 @@ CALLS: list[tuple[Callable[..., Any], str, tuple[Any, ...]]] = [
         for name in ("chamber", "layer")
     ),
     (
-        lambda maximum_distance: pectinate.carry_tracts(TractSet(), MODEL, MODEL, maximum_distance=maximum_distance),
+        lambda maximum_distance: pectinate.carry_tracts(
+            TractSet(), coarse_atrium(), coarse_atrium(), maximum_distance=maximum_distance
+        ),
         "maximum_distance",
-        (),
+        (3, 2.5),
     ),
     (lambda outer_loop: pectinate.parameterize(flat(), outer_loop=outer_loop), "outer_loop", ()),
     (lambda inner_loop: pectinate.parameterize(flat(), inner_loop=inner_loop), "inner_loop", ()),
