@@ -157,7 +157,8 @@ def _opening(mesh: _core.SurfaceMesh, loop: int) -> tuple[_Points, _Points]:
     radius = lengths.sum() / (2 * np.pi)
     normal = _normal(points, centre)
     centres = mesh.vertices[mesh.triangles].mean(axis=1)
-    beside = np.linalg.norm(centres - centre, axis=1) < 2 * radius
+    distances = np.linalg.norm(centres - centre, axis=1)
+    beside = distances <= max(2 * radius, distances.min())
     behind = np.average(centres[beside] - centre, axis=0, weights=mesh.triangle_areas[beside])
     outward = -normal if normal @ behind > 0 else normal
     size = np.linalg.norm(outward)

@@ -114,6 +114,25 @@ def test_closed_surfaces_have_no_names():
         pectinate.correspond(atrium(), closed)
 
 
+def test_pinholes_between_great_triangles_may_be_named():
+    corners = np.eye(3) * 20
+    outer = np.concatenate([corners, -corners])
+    faces = np.array([[0, 1, 2], [1, 3, 2], [3, 4, 2], [4, 0, 2], [1, 0, 5], [3, 1, 5], [4, 3, 5], [0, 4, 5]])
+    vertices, triangles, names = [*outer], [*faces[4:]], {}
+    for name, face in zip("abcd", faces[:4], strict=True):
+        middle = outer[face].mean(axis=0)
+        ring = len(vertices) + np.arange(3)
+        vertices += [middle + 1e-3 * (outer[corner] - middle) for corner in face]
+        a, b, c = face
+        p, q, r = ring
+        triangles += [[a, b, p], [b, q, p], [b, c, q], [c, r, q], [c, a, r], [a, p, r]]
+        names[name] = middle
+    model = pectinate.load((np.array(vertices), np.array(triangles)), units="mm").with_loop_points(names)
+    assert len(model.mesh.boundary_loops) == 4
+    found = pectinate.correspond(model, model)
+    np.testing.assert_allclose(found.carry(model.mesh.vertices), model.mesh.vertices, atol=1e-6)
+
+
 def test_its_report():
     report = pectinate.correspond(atrium(), mapped(atrium(), SHEAR)).report()
     assert list(report["loops"]) == list(atrium().loop_names)
