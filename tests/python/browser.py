@@ -64,7 +64,8 @@ class Browser:
         return np.asarray(image.convert("RGB").reduce(ratio), dtype=np.float64)
 
     def window(self) -> NDArray[np.float64]:
-        """The whole window, controls included, (h, w, 3), 0 to 255."""
+        """The whole window, controls included, (h, w, 3), 0 to 255, with the fine picture that a page at rest has."""
+        self.run("if (viewer) { clearTimeout(viewer.finePicture); viewer.draw(2); }")
         return np.asarray(Image.open(io.BytesIO(self.driver.get_screenshot_as_png())).convert("RGB"), dtype=np.float64)
 
     def messages(self) -> list[str]:

@@ -413,3 +413,24 @@ def test_what_makes_no_sheet_is_refused() -> None:
         figure_sheet(Cell(ball, centre=(0, np.nan, 0)))
     with pytest.raises(InvalidOption, match=r"\.png"):
         figure_sheet(Cell(ball), "sheet.docx")
+
+
+@drawn
+def test_a_marker_stands_where_its_place_is_seen_from_outside() -> None:
+    vertices, triangles = sphere()
+    back_half = Part("shell", (vertices, triangles[(vertices[triangles][:, :, 1] >= 0).all(axis=1)]))
+    options = {"size": (300, 240), "mm_per_pixel": 0.1, "scale_bar": False}
+    front, back, aside = (0.0, -10.0, 0.0), (0.0, 10.0, 0.0), (3.0, -9.5, 2.0)
+
+    def middle(part: Part, marker: Marker) -> NDArray[np.float64] | None:
+        bare, marked = (
+            np.asarray(figure_sheet(Cell(part, markers=some, centre=(0, 0, 0)), **options)).astype(int)
+            for some in ([], [marker])
+        )
+        changed = np.argwhere((bare != marked).any(axis=2))
+        return changed.mean(axis=0) if len(changed) else None
+
+    assert middle(back_half, Marker(back, "1")) is None
+    ball = Part("ball", (vertices, triangles))
+    expected = middle(ball, Marker(aside, "1"))
+    assert middle(ball, Marker(back, "1", [aside, front])) == pytest.approx(expected)

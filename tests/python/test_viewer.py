@@ -337,5 +337,5 @@ def test_parts_of_a_page_stand_where_they_are_placed_and_have_their_colors() -> 
     assert part["tracts"] == same["tracts"]
     assert part["surface_color"] == [1, 0, 0]
     assert same["surface_color"] == list(pectinate.figure.Style().surface_color)
-    assert shown["markers"][0]["position"] == pytest.approx(by_hand[4].tolist())
+    assert shown["markers"][0]["places"][0]["position"] == pytest.approx(by_hand[4].tolist())
     assert shown["views"] == expected["views"]

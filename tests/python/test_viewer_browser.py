@@ -16,7 +16,7 @@ import pectinate
 from browser import Browser, start_browser
 from pectinate import datasets, place_streamlines
 from pectinate.figure import SurfaceValues, render_view, standard_view
-from pectinate.viewer import Marker, Page
+from pectinate.viewer import Marker, Page, Part
 
 SIZE = (360, 300)
 # Darker pixels are those of tubes on a surface in light.
@@ -277,6 +277,24 @@ def test_parts_and_markers_are_switched_together(
     labels = browser.run("return [...document.querySelectorAll('#panel label, #panel h1')].map((e) => e.textContent)")
     assert {"</script><i>two", "left <b>", "right", "Tracts", "Markers"} <= set(labels)
     assert browser.messages() == []
+
+
+def test_markers_are_seen_from_outside_only_and_stand_where_they_are_seen(browser: Browser, tmp_path: Path) -> None:
+    vertices, triangles = meshes.sphere(3, radius=5)
+    back_half = vertices, triangles[(vertices[triangles][:, :, 1] >= 0).all(axis=1)]
+    front, back = (0.0, -5.0, 0.0), (0.0, 5.0, 0.0)
+    marks = [Marker(back, "back"), Marker(front, "front"), Marker(back, "either", [front])]
+    shown = "viewer.draw(1); return viewer.visibleMarkers().map(({ text }) => text)"
+    for surface, before, behind in (
+        ((vertices, triangles), ["front", "either"], ["back", "either"]),
+        (back_half, [], ["back", "either"]),
+    ):
+        here = marks if before else [marks[0], marks[2]]
+        Page(Part("shell", surface), markers=here, views=["anterior", "posterior"]).save(tmp_path / "shell.html")
+        open_folded(browser, tmp_path / "shell.html")
+        assert browser.run(shown) == before
+        browser.run("viewer.look(1)")
+        assert browser.run(shown) == behind
 
 
 def test_dark_mode_and_a_narrow_window_change_nothing_of_the_picture(browser: Browser, page: Path) -> None:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from pectinate.datasets.atria import FIBRE_RULES
-from pectinate.figure import Cell, Marker, Part, View, figure_sheet
+from pectinate.figure import Cell, Marker, Part, Style, View, figure_sheet
 from pectinate.interpolated_field import InterpolatedField
 from pectinate.placement import Placement
 from pectinate.viewer import Page
@@ -23,6 +23,7 @@ _FIBRE_VIEWS: Sequence[str | View] = ("anterior", "posterior", _RIGHT_SUPERIOR)
 _TRACT_VIEWS = ("anterior", "posterior")
 _PICTURE_SIZE = (900, 800)  # pixels
 _TRACT_RADIUS = 0.5  # mm
+_TRACT_COLOR = (0.72, 0.12, 0.10)  # beside black streamlines
 #: How far along a tract its number stands; the next share if it is not seen there.
 _MARKED_SHARES = (0.5, 0.7, 0.3, 0.85, 0.15)
 
@@ -97,7 +98,8 @@ def atria_page(layers: AtrialLayers) -> Page:
             options = {"tracts": shown.curves, "tract_radius": _TRACT_RADIUS}
             parts.append(shown.part(title, visible=layer == next(iter(layers)), **options))
     notes = [f"{row} {rule}" for row, rule in FIBRE_RULES.items()]
-    return Page(parts, markers=markers, title="Fibres of the atria", notes=notes)
+    style = Style(tract_color=_TRACT_COLOR)
+    return Page(parts, markers=markers, title="Fibres of the atria", notes=notes, style=style)
 
 
 def _marker(label: str, curves: list[NDArray[np.float64]]) -> Marker:

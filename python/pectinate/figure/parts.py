@@ -163,8 +163,7 @@ class Marker:
     text : str
         A number or a short word.
     alternatives : sequence of tuples of 3 float
-        Places on the same part where a picture shows the marker instead, the first that is seen, if its position is
-        not. Pages have no use for them, because they can be turned.
+        Places on the same part where the marker is shown instead, at the first that is seen, if its position is not.
 
     Raises
     ------

@@ -44,7 +44,7 @@ class Page:
     title : str
         Above the switches.
     notes : sequence of str
-        Lines below the title.
+        Lines below the controls; more than three are folded.
     views : sequence of str or View
         A button for each; the page begins with the first.
     axes : str or PatientAxes

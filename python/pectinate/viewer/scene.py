@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pectinate.errors import InvalidOption
 from pectinate.figure.frame import MARGIN
-from pectinate.figure.parts import Lines, Marker, Part, nearest_parts, used_vertices
+from pectinate.figure.parts import Lines, Marker, Part, nearest_parts, normal_at, used_vertices
 from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import FOLD_SIZE
 from pectinate.figure.shading import Style, light_settings
@@ -180,11 +180,16 @@ def _scale(name: str, scale: ColorScale, label: str, style: Style) -> dict[str, 
 
 
 def _markers(markers: Sequence[Marker], parts: Sequence[Part]) -> list[dict[str, Any]]:
-    """Markers, each with the part that it is shown with."""
-    return [
-        {"position": parts[part].placed([marker.position])[0].tolist(), "text": marker.text, "part": int(part)}
-        for marker, part in zip(markers, nearest_parts(markers, parts), strict=True)
-    ]
+    """Markers, each with the part that it is shown with, and its places with the outward normals there."""
+    described = []
+    for marker, index in zip(markers, nearest_parts(markers, parts), strict=True):
+        part, places = parts[index], [marker.position, *marker.alternatives]
+        shown = [
+            {"position": position.tolist(), "normal": normal_at(part, place).tolist()}
+            for place, position in zip(places, part.placed(places), strict=True)
+        ]
+        described.append({"text": marker.text, "part": int(index), "places": shown})
+    return described
 
 
 def _view(view: View) -> dict[str, Any]:

@@ -143,8 +143,16 @@ class Viewer {
   visibleMarkers() {
     return this.scene.markers
       .filter(({ part }) => this.parts[part].visible)
-      .map(({ position, text }) => ({ place: this.view.toPicture(position), text }))
-      .filter(({ place }) => !this.picture.hides(place, this.view, this.scene.fold_size));
+      .map(({ places, text }) => ({ place: this.firstSeen(places), text }))
+      .filter(({ place }) => place);
+  }
+
+  // Where in the picture the first of some places is that is seen from outside.
+  firstSeen(places) {
+    return places
+      .filter(({ normal }) => dot(normal, this.view.rotation[2]) > 0)
+      .map(({ position }) => this.view.toPicture(position))
+      .find((place) => !this.picture.hides(place, this.view, this.scene.fold_size));
   }
 
   // The picture with what is written over it, as a PNG data URL.
@@ -168,7 +176,6 @@ function boundingBall(clouds) {
 
 function fillPanel(panel, viewer, scene) {
   const { parts } = viewer;
-  for (const line of scene.notes) panel.note(line);
   panel.heading('View');
   panel.buttons(scene.views.map(({ name }) => name), (index) => viewer.look(index));
   panel.heading('Show');
@@ -201,6 +208,7 @@ function fillPanel(panel, viewer, scene) {
     link.download = `${scene.title || 'pectinate'}.png`;
     link.click();
   });
+  if (scene.notes.length) panel.notes(scene.notes);
 }
 
 // Why the page cannot be shown, or null.

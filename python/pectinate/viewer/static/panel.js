@@ -1,6 +1,7 @@
 // Buttons, switches and the slider.
 
 const FOLD_BELOW = 640;  // CSS pixels
+const SHOWN_NOTES = 3;
 
 class Panel {
   constructor(root, title) {
@@ -17,8 +18,12 @@ class Panel {
     element(this.root, 'h2', text);
   }
 
-  note(text) {
-    element(this.root, 'p', text);
+  // Few lines are shown, many wait until they are asked for.
+  notes(lines) {
+    const details = element(this.root, 'details');
+    details.open = lines.length <= SHOWN_NOTES;
+    element(details, 'summary', 'Notes');
+    for (const line of lines) element(details, 'p', line);
   }
 
   button(parent, text, clicked) {
