@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "detail/chord_occupancy.hpp"
-#include "detail/crossings.hpp"
 #include "detail/edge_point.hpp"
 #include "detail/seed_regions.hpp"
+#include "detail/sheet.hpp"
 #include "pectinate/occupancy.hpp"
 
 namespace pectinate {
@@ -21,31 +21,32 @@ constexpr double retired_half_width = 1.0 / 128;
 class ExactOccupancy final : public Occupancy {
  public:
   ExactOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const Clearance& clearance)
-      : mesh_(mesh), tracer_(tracer), occupancy_(mesh, tracer, clearance), free_(mesh.triangle_count()) {
+      : mesh_(mesh), sheet_(tracer.sheet()), occupancy_(mesh, tracer, clearance), free_(mesh.triangle_count()) {
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t) update(t);
   }
 
   bool admits(std::int32_t triangle, double chord, const EdgePoint&) const override {
-    return !occupancy_.stopped().contains(triangle, chord);
+    return !occupancy_.stopped().contains(sheet_.ranks[triangle], chord);
   }
 
   bool admits_seed(const Seed& seed) const override {
-    return !occupancy_.unseeded().contains(seed.triangle, chord_of(seed));
+    return !occupancy_.unseeded().contains(sheet_.ranks[seed.triangle], chord_of(seed));
   }
 
   void add(const Streamline& streamline) override {
-    detail::Polyline line{{}, streamline.triangles, {}};
+    detail::Polyline line;
     for (const auto& point : streamline.points) line.points.push_back(detail::position(mesh_, point));
-    for (std::size_t i = 0; i < line.triangles.size(); ++i) {
-      line.chords.push_back(chord_of({streamline.points[i], line.triangles[i]}));
+    for (std::size_t i = 0; i < streamline.triangles.size(); ++i) {
+      line.triangles.push_back(sheet_.ranks[streamline.triangles[i]]);
+      line.chords.push_back(chord_of({streamline.points[i], streamline.triangles[i]}));
     }
     occupancy_.add(line);
-    for (const auto triangle : occupancy_.changed()) update(triangle);
+    for (const auto triangle : occupancy_.changed()) update(sheet_.mesh_triangles[triangle]);
   }
 
   void retire_seed(const Seed& seed) override {
     const double chord = chord_of(seed);
-    occupancy_.retire_seed(seed.triangle, {chord - retired_half_width, chord + retired_half_width});
+    occupancy_.retire_seed(sheet_.ranks[seed.triangle], {chord - retired_half_width, chord + retired_half_width});
     update(seed.triangle);
   }
 
@@ -58,19 +59,23 @@ class ExactOccupancy final : public Occupancy {
   double coverage() const override { return occupancy_.coverage(); }
 
  private:
+  const detail::TriangleCrossings& crossings_of(std::int32_t triangle) const {
+    return sheet_.crossings[sheet_.ranks[triangle]];
+  }
+
   double chord_of(const Seed& seed) const {
-    const auto& crossings = tracer_.crossings()[seed.triangle];
-    return detail::chord_coordinate(crossings, detail::role_with_edge(crossings, seed.point.edge), seed.point.position);
+    const auto& crossings = crossings_of(seed.triangle);
+    return detail::chord_coordinate(crossings, detail::role_with_edge(mesh_, seed.triangle, crossings, seed.point.edge),
+                                    seed.point.position);
   }
 
   Seed seed_on(std::int32_t triangle, double chord) const {
-    const auto& crossings = tracer_.crossings()[triangle];
-    return {{crossings.exits[detail::low_high].edge, detail::edge_position(crossings, detail::low_high, chord)},
-            triangle};
+    const auto& crossings = crossings_of(triangle);
+    return {detail::edge_point(mesh_, triangle, crossings, detail::low_high, chord), triangle};
   }
 
   double draw_chord(std::int32_t triangle, Random& random) const {
-    const auto gaps = occupancy_.unseeded().gaps(triangle);
+    const auto gaps = occupancy_.unseeded().gaps(sheet_.ranks[triangle]);
     double width = 0;
     for (const auto& gap : gaps) width += gap.high - gap.low;
     double offset = random.unit() * width;
@@ -82,15 +87,16 @@ class ExactOccupancy final : public Occupancy {
   }
 
   void update(std::int32_t triangle) {
+    const auto rank = sheet_.ranks[triangle];
     const double scale = weight_of_mean_area * static_cast<double>(mesh_.triangle_count()) / mesh_.area();
-    const double free_area = occupancy_.free_share(triangle) * mesh_.triangle_areas()[triangle];
-    const bool full = occupancy_.unseeded().is_full(triangle);
+    const double free_area = occupancy_.free_share(rank) * mesh_.triangle_areas()[triangle];
+    const bool full = occupancy_.unseeded().is_full(rank);
     const auto weight = full ? 0 : std::max<std::uint64_t>(1, std::llround(free_area * scale));
-    free_.set(triangle, weight, occupancy_.unseeded().is_empty(triangle));
+    free_.set(triangle, weight, occupancy_.unseeded().is_empty(rank));
   }
 
   const SurfaceMesh& mesh_;
-  const StreamlineTracer& tracer_;
+  const detail::Sheet& sheet_;
   detail::ChordOccupancy occupancy_;
   detail::SeedRegions free_;
 };

@@ -222,6 +222,20 @@ void append(const SurfaceMesh& mesh, const Streamline& line, Placement& placemen
   placement.seed_points.push_back(first + line.seed_index);
 }
 
+void append(const detail::PlacedLine& line, Placement& placement) {
+  const auto first = static_cast<std::int64_t>(placement.points.size());
+  for (const auto& point : line.points) placement.points.push_back(detail::vec3(point));
+  for (auto* triangles : {&placement.point_triangles, &placement.segment_triangles}) {
+    triangles->insert(triangles->end(), line.triangles.begin(), line.triangles.end());
+  }
+  placement.point_triangles.push_back(line.triangles.back());
+  placement.barycentric.insert(placement.barycentric.end(), line.barycentric.begin(), line.barycentric.end());
+  placement.offsets.push_back(static_cast<std::int64_t>(placement.points.size()));
+  placement.lengths.push_back(line.length);
+  placement.stop_reasons.push_back(line.stop_reasons);
+  placement.seed_points.push_back(first + std::ssize(line.points) / 2);
+}
+
 double directed_area(const SurfaceMesh& mesh, const OrientationField& field) {
   double area = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -276,7 +290,7 @@ double place_longest(const SurfaceMesh& mesh, const StreamlineTracer& tracer, co
                      Progress& progress, Placement& placement) {
   detail::ChordOccupancy occupancy(mesh, tracer, clearance_of(options));
   const bool complete = detail::place_longest_first(
-      mesh, tracer, options.minimum_length, occupancy, [&](const Streamline& line) { append(mesh, line, placement); },
+      mesh, tracer, options.minimum_length, occupancy, [&](const auto& line) { append(line, placement); },
       [&] { return !progress.is_cancelled([&] { return occupancy.coverage(); }); });
   if (!complete) placement.end = PlacementEnd::cancelled;
   return occupancy.coverage();

@@ -11,6 +11,7 @@
 #include "detail/fit_checks.hpp"
 #include "detail/number_text.hpp"
 #include "detail/self_approach.hpp"
+#include "detail/sheet.hpp"
 #include "detail/vec.hpp"
 #include "detail/visited_chords.hpp"
 #include "pectinate/errors.hpp"
@@ -65,7 +66,7 @@ struct StreamlineTracer::Precomputed {
   const SurfaceMesh& mesh;
   const OrientationField& field;
   TracingOptions options;
-  std::vector<detail::TriangleCrossings> crossings;  // per triangle
+  detail::Sheet sheet;
 };
 
 class StreamlineTracer::Workspace {
@@ -79,15 +80,15 @@ namespace {
 
 /// Where a streamline enters a triangle.
 struct Entry {
-  std::int32_t triangle;
-  Role role;  // of the side that it enters through
+  std::int32_t triangle;  // of the sheet
+  Role role;              // of the side that it enters through
 };
 
 /// What does not change along the way.
 struct Tracing {
   const SurfaceMesh& mesh;
   const TracingOptions& options;
-  const std::vector<detail::TriangleCrossings>& crossings;
+  const detail::Sheet& sheet;
   const Occupancy* occupancy;
   double separation;  // at the seed
 };
@@ -95,15 +96,17 @@ struct Tracing {
 /// Traces one way from the last point of the streamline and appends to it; `direction` is the sign of its arc length.
 StopReason trace_one_way(const Tracing& tracing, Entry entry, double direction, Workspace& workspace) {
   auto& line = workspace.streamline;
-  double chord = detail::chord_coordinate(tracing.crossings[entry.triangle], entry.role, line.points.back().position);
+  const auto& all = tracing.sheet.crossings;
+  double chord = detail::chord_coordinate(all[entry.triangle], entry.role, line.points.back().position);
   detail::Vector previous = detail::position(tracing.mesh, line.points.back());
   double length = 0;
   for (std::int64_t step = 0; step < tracing.options.max_steps; ++step) {
-    const auto& crossings = tracing.crossings[entry.triangle];
+    const auto& crossings = all[entry.triangle];
+    const auto triangle = tracing.sheet.mesh_triangles[entry.triangle];
     const Role role = detail::exit_role(crossings, entry.role, chord);
-    const auto& exit = crossings.exits[role];
-    const EdgePoint point{exit.edge, detail::edge_position(crossings, role, chord)};
-    if (tracing.occupancy && !tracing.occupancy->admits(entry.triangle, chord, point)) return StopReason::near_other;
+    const auto exit = crossings.exit(role);
+    const auto point = detail::edge_point(tracing.mesh, triangle, crossings, role, chord);
+    if (tracing.occupancy && !tracing.occupancy->admits(triangle, chord, point)) return StopReason::near_other;
     const auto place = detail::position(tracing.mesh, point);
     const double piece = (place - previous).norm();
     if (workspace.points.is_near(place, direction * (length + piece)) ||
@@ -113,12 +116,12 @@ StopReason trace_one_way(const Tracing& tracing, Entry entry, double direction, 
     length += piece;
     workspace.points.add(place, direction * length);
     line.points.push_back(point);
-    line.triangles.push_back(entry.triangle);
+    line.triangles.push_back(triangle);
     line.length += piece;
     previous = place;
     if (exit.triangle < 0) return exit.stop_reason;
     entry = {exit.triangle, exit.role};
-    chord = detail::chord_coordinate(tracing.crossings[entry.triangle], entry.role, point.position);
+    chord = detail::chord_coordinate(all[entry.triangle], entry.role, point.position);
   }
   return StopReason::max_steps;
 }
@@ -129,7 +132,7 @@ StreamlineTracer::StreamlineTracer(const SurfaceMesh& mesh, const OrientationFie
                                    const TracingOptions& options) {
   check(mesh, field, options);
   precomputed_ = std::make_unique<const Precomputed>(
-      Precomputed{mesh, field, options, detail::make_crossings(mesh, field, options.abrupt_turn_angle)});
+      Precomputed{mesh, field, options, detail::make_sheet(mesh, field, options.abrupt_turn_angle)});
 }
 
 StreamlineTracer::~StreamlineTracer() = default;
@@ -154,12 +157,12 @@ double StreamlineTracer::separation_distance(std::int32_t triangle) const {
   return options.separation_distances.empty() ? options.separation_distance : options.separation_distances[triangle];
 }
 
-const std::vector<detail::TriangleCrossings>& StreamlineTracer::crossings() const {
-  return precomputed_->crossings;
+const detail::Sheet& StreamlineTracer::sheet() const {
+  return precomputed_->sheet;
 }
 
 const Streamline& StreamlineTracer::trace(const Seed& seed, const Occupancy* occupancy, Workspace& workspace) const {
-  const auto& [mesh, field, options, crossings] = *precomputed_;
+  const auto& [mesh, field, options, sheet] = *precomputed_;
   if (!field.has_direction(seed.triangle)) {
     throw InvalidField("triangle " + std::to_string(seed.triangle) + " has no direction; seed elsewhere");
   }
@@ -170,11 +173,13 @@ const Streamline& StreamlineTracer::trace(const Seed& seed, const Occupancy* occ
   const auto seed_place = detail::position(mesh, line.points[0]);
   workspace.points.start(separation_distance(seed.triangle), seed_place);
   workspace.points.add(seed_place, 0);
-  workspace.chords.start(crossings.size());
+  workspace.chords.start(mesh.triangle_count());
 
-  const Tracing tracing{mesh, options, crossings, occupancy, separation_distance(seed.triangle)};
-  const Entry ahead{seed.triangle, detail::role_with_edge(crossings[seed.triangle], seed.point.edge)};
-  const auto& behind = crossings[seed.triangle].exits[ahead.role];
+  const Tracing tracing{mesh, options, sheet, occupancy, separation_distance(seed.triangle)};
+  const auto triangle = sheet.ranks[seed.triangle];
+  const auto& crossings = sheet.crossings[triangle];
+  const Entry ahead{triangle, detail::role_with_edge(mesh, seed.triangle, crossings, seed.point.edge)};
+  const auto behind = crossings.exit(ahead.role);
   line.stop_reasons[0] = behind.stop_reason;
   if (behind.triangle >= 0) {
     line.stop_reasons[0] = trace_one_way(tracing, {behind.triangle, behind.role}, -1, workspace);

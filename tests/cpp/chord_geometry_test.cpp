@@ -83,8 +83,8 @@ struct RandomTriangle {
       : mesh(Soup{{vec3(draw_vector(random)), vec3(draw_vector(random)), vec3(draw_vector(random))}, {{0, 1, 2}}}
                  .mesh()),
         field(test::constant_field(mesh, draw_direction(mesh, random, flatness))),
-        crossings(make_crossings(mesh, field, 1)[0]),
-        frame(mesh, 0, crossings) {}
+        sheet(make_sheet(mesh, field, 1)),
+        frame(sheet.low(0), sheet.middle(0), sheet.high(0), sheet.crossings[0].split) {}
 
   /// Close to parallel to a side if `flatness` is small.
   static Vector draw_direction(const SurfaceMesh& mesh, Random& random, double flatness) {
@@ -99,28 +99,30 @@ struct RandomTriangle {
 
   SurfaceMesh mesh;
   OrientationField field;
-  TriangleCrossings crossings;
+  Sheet sheet;
   ChordFrame frame;
 };
 
 /// The shadow holds the chords that come within the radius of the axis, no more and no less.
 void check_shadow(const RandomTriangle& triangle, const Capsule& capsule) {
   const double tolerance = 1e-8 * (1 + capsule.radius);
-  const auto reach = triangle.frame.reach(capsule);
-  const auto shadow = reach ? triangle.frame.shadow(capsule, *reach) : std::nullopt;
+  const auto& frame = triangle.frame;
+  const Capsule flat{frame.flat(capsule.start), frame.flat(capsule.end), capsule.radius};
+  const auto reach = frame.reach(flat);
+  const auto shadow = reach ? frame.shadow(flat, frame.look(flat)) : std::nullopt;
   if (shadow) {
     CHECK(shadow->low <= shadow->high);
-    CHECK(shadow->low >= std::max(reach->chords.low, 0.0) - 1e-9);
-    CHECK(shadow->high <= std::min(reach->chords.high, 1.0) + 1e-9);
+    CHECK(shadow->low >= std::max(reach->low, 0.0) - 1e-9);
+    CHECK(shadow->high <= std::min(reach->high, 1.0) + 1e-9);
   }
   for (int i = 0; i <= 60; ++i) {
     const double chord = std::clamp(i / 60.0, 1e-6, 1 - 1e-6);
-    const auto piece = test::chord_segment(triangle.mesh, triangle.crossings, chord);
+    const auto piece = test::chord_segment(triangle.sheet, 0, chord);
     const double distance = segment_distance(piece.start, piece.end, capsule.start, capsule.end);
     if (std::abs(distance - capsule.radius) < tolerance) continue;
     const bool inside = shadow && shadow->low <= chord && chord <= shadow->high;
     CHECK(inside == (distance < capsule.radius));
-    if (distance < capsule.radius) CHECK((reach && reach->chords.low <= chord && chord <= reach->chords.high));
+    if (distance < capsule.radius) CHECK((reach && reach->low <= chord && chord <= reach->high));
   }
 }
 

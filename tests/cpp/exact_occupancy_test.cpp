@@ -27,7 +27,6 @@ struct Bench {
       : mesh(soup.mesh()),
         field(make_field(mesh)),
         tracer(mesh, field, options),
-        crossings(tracer.crossings()),
         occupancy(make_exact_occupancy(mesh, tracer, clearance)) {}
 
   /// Adds the line through a seed, criterion 3 off.
@@ -50,7 +49,7 @@ struct Bench {
 
   /// How far the chord is from the lines, in separation distances of theirs; infinite if it is more than `limit`.
   double clearance_of(std::int32_t triangle, double chord, double limit = 2) const {
-    const auto piece = chord_segment(mesh, crossings[triangle], chord);
+    const auto piece = chord_segment(tracer.sheet(), triangle, chord);
     double least = std::numeric_limits<double>::infinity();
     for (const auto& segment : segments) {
       if (piece.is_farther_than(segment, limit * segment.separation_distance)) continue;
@@ -59,16 +58,18 @@ struct Bench {
     return least;
   }
 
+  const detail::TriangleCrossings& crossings(std::int32_t triangle) const {
+    return tracer.sheet().crossings[tracer.sheet().ranks[triangle]];
+  }
+
   bool admits(std::int32_t triangle, double chord) const {
-    const auto& exit = crossings[triangle].exits[detail::low_high];
-    const double position = detail::edge_position(crossings[triangle], detail::low_high, chord);
-    return occupancy->admits(triangle, chord, {exit.edge, position});
+    return occupancy->admits(triangle, chord,
+                             detail::edge_point(mesh, triangle, crossings(triangle), detail::low_high, chord));
   }
 
   bool admits_seed(std::int32_t triangle, double chord) const {
-    const auto& exit = crossings[triangle].exits[detail::low_high];
-    const double position = detail::edge_position(crossings[triangle], detail::low_high, chord);
-    return occupancy->admits_seed({{exit.edge, position}, triangle});
+    return occupancy->admits_seed(
+        {detail::edge_point(mesh, triangle, crossings(triangle), detail::low_high, chord), triangle});
   }
 
   double greatest_separation() const {
@@ -82,7 +83,6 @@ struct Bench {
   SurfaceMesh mesh;
   OrientationField field;
   StreamlineTracer tracer;
-  std::vector<detail::TriangleCrossings> crossings;
   std::unique_ptr<Occupancy> occupancy;
   std::vector<Piece> segments;
 };
@@ -99,7 +99,7 @@ constexpr double guard = 3e-6;
 /// Is a chord that is taken, but for the guard, the last one that is near the lines?
 void check_border(const Bench& bench, double clearance, std::int32_t t, double free, double taken) {
   CHECK(bench.clearance_of(t, free) >= clearance);
-  const double shift = std::copysign(guard * bench.greatest_separation() / bench.crossings[t].width, taken - free);
+  const double shift = std::copysign(guard * bench.greatest_separation() / bench.crossings(t).width, taken - free);
   double nearest = std::numeric_limits<double>::infinity();
   for (int i = 1; i <= 8; ++i) {
     nearest = std::min(nearest, bench.clearance_of(t, std::clamp(free + i * shift / 8, 0.0, 1.0)));
@@ -142,8 +142,8 @@ double counted_coverage(const Bench& bench) {
   for (std::int32_t t = 0; t < bench.triangle_count(); ++t) {
     if (!bench.field.has_direction(t)) continue;
     for (int i = 0; i < chords_per_triangle; ++i) {
-      const double weight = bench.mesh.triangle_areas()[t] * detail::chord_length(bench.crossings[t], sample(i)) /
-                            bench.crossings[t].longest_chord;
+      const double weight = bench.mesh.triangle_areas()[t] * detail::chord_length(bench.crossings(t), sample(i)) /
+                            bench.crossings(t).longest_chord;
       taken += bench.admits(t, sample(i)) ? 0 : weight;
       total += weight;
     }
@@ -382,7 +382,7 @@ TEST_CASE("exact occupancy: seeds are drawn evenly by area from what is free") {
     for (std::int32_t t = 0; t < bench.triangle_count(); ++t) {
       double free = 0, all = 0;
       for (int i = 0; i < pieces; ++i) {
-        const double chord = (i + 0.5) / pieces, length = detail::chord_length(bench.crossings[t], chord);
+        const double chord = (i + 0.5) / pieces, length = detail::chord_length(bench.crossings(t), chord);
         all += length;
         free += bench.admits(t, chord) ? length : 0;
       }

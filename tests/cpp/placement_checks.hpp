@@ -8,8 +8,8 @@
 #include <numeric>
 #include <vector>
 
-#include "detail/crossings.hpp"
 #include "detail/segment_distance.hpp"
+#include "detail/sheet.hpp"
 #include "lines.hpp"
 #include "pectinate/placement.hpp"
 
@@ -59,12 +59,11 @@ inline std::vector<Piece> segments_of(const Placement& placement) {
   return segments;
 }
 
-/// The chord of a triangle with this coordinate.
-inline Piece chord_segment(const SurfaceMesh& mesh, const detail::TriangleCrossings& crossings, double chord) {
-  const auto at = [&](detail::Role role) {
-    return detail::position(mesh, {crossings.exits[role].edge, detail::edge_position(crossings, role, chord)});
-  };
-  return {at(detail::low_high), at(detail::exit_role(crossings, detail::low_high, chord))};
+/// The chord of a mesh triangle with this coordinate.
+inline Piece chord_segment(const detail::Sheet& sheet, std::int32_t triangle, double chord) {
+  const auto rank = sheet.ranks[triangle];
+  const auto other = detail::exit_role(sheet.crossings[rank], detail::low_high, chord);
+  return {sheet.point(rank, detail::low_high, chord), sheet.point(rank, other, chord)};
 }
 
 inline bool same_bytes(const Placement& a, const Placement& b) {
@@ -176,12 +175,12 @@ inline void check_self_separation(const Placement& placement, double separation)
 inline void check_complete(const SurfaceMesh& mesh, const OrientationField& field, const Placement& placement,
                            double separation, int chords_per_triangle = 20) {
   const auto segments = segments_of(placement);
-  const auto crossings = detail::make_crossings(mesh, field, 1);
+  const auto sheet = detail::make_sheet(mesh, field, 1);
   int free = 0;
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t) {
     if (!field.has_direction(t)) continue;
     for (int i = 0; i < chords_per_triangle; ++i) {
-      const auto chord = chord_segment(mesh, crossings[t], (i + 0.5) / chords_per_triangle);
+      const auto chord = chord_segment(sheet, t, (i + 0.5) / chords_per_triangle);
       free += std::none_of(segments.begin(), segments.end(), [&](const auto& other) {
         return !chord.is_farther_than(other, 1.01 * separation) && chord.distance(other) < separation * (1 + 1e-5);
       });

@@ -82,7 +82,7 @@ class SurfaceMesh {
   }
   /// True where corner `side` of the triangle is the first end vertex of the edge of side `side`.
   bool runs_along(std::int32_t triangle, int side) const { return side_runs_along_[triangle] >> side & 1; }
-  SideNeighbour neighbour(std::int32_t triangle, int side) const { return neighbours_[triangle][side]; }
+  const SideNeighbour& neighbour(std::int32_t triangle, int side) const { return neighbours_[triangle][side]; }
 
   const std::vector<double>& triangle_areas() const { return areas_; }
   const std::vector<Vec3>& triangle_normals() const { return normals_; }  ///< unit

@@ -15,7 +15,7 @@ namespace pectinate {
 
 class Occupancy;
 namespace detail {
-struct TriangleCrossings;
+struct Sheet;
 }
 
 /// A point on an edge: `position` in (0, 1) from the edge's first end vertex to its second (paper section 2.4).
@@ -93,8 +93,8 @@ class StreamlineTracer {
   /// d_sep in a triangle.
   double separation_distance(std::int32_t triangle) const;
 
-  /// Per triangle; for the library's own use.
-  const std::vector<detail::TriangleCrossings>& crossings() const;
+  /// For the library's own use.
+  const detail::Sheet& sheet() const;
 
  private:
   struct Precomputed;

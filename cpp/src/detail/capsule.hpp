@@ -40,31 +40,31 @@ inline std::optional<Interval> non_positive(double a, double b, double c) {
 /// interval.
 inline std::optional<Interval> intersect(const Capsule& capsule, const Vector& p, const Vector& e) {
   const double square = capsule.radius * capsule.radius;
-  std::optional<Interval> hull;
-  const auto include = [&](const std::optional<Interval>& part) {
-    if (!part || part->low > part->high) return;
-    hull = hull ? Interval{std::min(hull->low, part->low), std::max(hull->high, part->high)} : *part;
+  const Vector axis = capsule.end - capsule.start, from_start = p - capsule.start;
+  const auto in_ball = [&](bool at_end) {
+    const Vector from_centre = at_end ? Vector(p - capsule.end) : from_start;
+    return non_positive(e.squaredNorm(), e.dot(from_centre), from_centre.squaredNorm() - square);
   };
-  const Vector axis = capsule.end - capsule.start;
-  const Vector from_start = p - capsule.start, from_end = p - capsule.end;
-  include(non_positive(e.squaredNorm(), e.dot(from_start), from_start.squaredNorm() - square));
-  include(non_positive(e.squaredNorm(), e.dot(from_end), from_end.squaredNorm() - square));
   const double axis_square = axis.squaredNorm();
+  std::optional<Interval> part;
   if (axis_square > 0) {
     const double p_along = from_start.dot(axis) / axis_square, e_along = e.dot(axis) / axis_square;
     const Vector p_across = from_start - p_along * axis, e_across = e - e_along * axis;
-    auto cylinder = non_positive(e_across.squaredNorm(), e_across.dot(p_across), p_across.squaredNorm() - square);
-    if (cylinder && e_along != 0) {
-      const double first = -p_along / e_along, last = (1 - p_along) / e_along;
-      cylinder->low = std::max(cylinder->low, std::min(first, last));
-      cylinder->high = std::min(cylinder->high, std::max(first, last));
-    } else if (p_along < 0 || p_along > 1) {
-      cylinder.reset();
+    part = non_positive(e_across.squaredNorm(), e_across.dot(p_across), p_across.squaredNorm() - square);
+    if (!part) return std::nullopt;
+    // Where the cylinder is entered or left beyond an end of the axis, it is the ball there that counts.
+    for (double Interval::* end : {&Interval::low, &Interval::high}) {
+      const double along = p_along + *part.*end * e_along;
+      if (along >= 0 && along <= 1) continue;
+      const auto ball = in_ball(along > 1);
+      if (!ball) return std::nullopt;
+      *part.*end = *ball.*end;
     }
-    include(cylinder);
+  } else {
+    part = in_ball(false);
   }
-  if (!hull || hull->high < 0 || hull->low > 1) return std::nullopt;
-  return Interval{std::max(hull->low, 0.0), std::min(hull->high, 1.0)};
+  if (!part || part->high < 0 || part->low > 1) return std::nullopt;
+  return Interval{std::max(part->low, 0.0), std::min(part->high, 1.0)};
 }
 
 }  // namespace pectinate::detail

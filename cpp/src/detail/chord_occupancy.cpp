@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "detail/chord_shadow.hpp"
 
@@ -16,6 +17,10 @@ constexpr double least_width = 1e-9;
 constexpr double block_length = 4;
 /// More than single precision loses, relative to the surface's size and to a distance.
 constexpr float size_slack = 4e-7F, distance_slack = 4e-6F;
+
+/// Segments that deviate less than this, in separation distances, from a straight line are first looked at as one.
+constexpr double coarse_tolerance = 0.03;
+constexpr std::size_t most_joined = 8;
 
 /// In place of a neighbour: a border, or more than two triangles at the edge.
 constexpr std::int32_t none = -1;
@@ -34,46 +39,54 @@ auto lanes_at(const float* values) {
 ChordOccupancy::ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const Clearance& clearance)
     : mesh_(mesh),
       tracer_(tracer),
+      sheet_(tracer.sheet()),
       clearance_(clearance),
       has_seed_sets_(clearance.seed != clearance.stop),
       stopped_(mesh.triangle_count()),
       unseeded_(has_seed_sets_ ? mesh.triangle_count() : 0),
       origin_(vector(mesh.vertices()[0])),
+      slack_(size_slack * static_cast<float>(mesh.bounding_box_diagonal())),
       tiles_(mesh.triangle_count()) {
   std::vector<bool> on_border(mesh.vertices().size(), false);
   for (const auto& loop : mesh.boundary_loops()) {
     for (const auto v : loop.vertices) on_border[v] = true;
   }
-  const auto slack = size_slack * static_cast<float>(mesh.bounding_box_diagonal());
-  for (std::int32_t t = 0; t < static_cast<std::int32_t>(tiles_.size()); ++t) {
-    const auto& corners = mesh.triangles()[t];
-    const auto corner = [&](int k) -> Vector { return vector(mesh.vertices()[corners[k]]) - origin_; };
-    const Vector centroid = (corner(0) + corner(1) + corner(2)) / 3;
-    double square = 0;
+  for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
     auto& tile = tiles_[t];
-    bool border = false;
-    for (int k = 0; k < 3; ++k) {
-      square = std::max(square, (corner(k) - centroid).squaredNorm());
-      const bool joins_two = mesh.edge_triangles(mesh.triangle_edges()[t][k]).size() == 2;
-      tile.neighbours[k] = joins_two ? mesh.neighbour(t, k).triangle : none;
-      border |= on_border[corners[k]];
-    }
+    const Vector a = sheet_.low(t) - origin_, b = sheet_.middle(t) - origin_, c = sheet_.high(t) - origin_;
+    const Vector centroid = (a + b + c) / 3;
+    const double square =
+        std::max({(a - centroid).squaredNorm(), (b - centroid).squaredNorm(), (c - centroid).squaredNorm()});
     tile.x = static_cast<float>(centroid.x());
     tile.y = static_cast<float>(centroid.y());
     tile.z = static_cast<float>(centroid.z());
-    tile.radius = static_cast<float>(std::sqrt(square)) * (1 + distance_slack) + slack;
-    if (border) tile.radius = -tile.radius;
+    tile.radius = static_cast<float>(std::sqrt(square)) * (1 + distance_slack) + slack_;
+    tile.neighbours = sheet_.crossings[t].neighbours;
     tile.round = 0;
-    if (tracer.has_direction(t)) continue;
+    if (sheet_.has_direction(t)) continue;
     stopped_.fill(t);
     if (has_seed_sets_) unseeded_.fill(t);
+  }
+  for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
+    const auto& corners = mesh.triangles()[t];
+    auto& radius = tiles_[sheet_.ranks[t]].radius;
+    if (on_border[corners[0]] || on_border[corners[1]] || on_border[corners[2]]) radius = -radius;
+  }
+  // Where the surface was cut it goes on for distances.
+  for (std::int32_t edge = 0; edge < static_cast<std::int32_t>(mesh.edges().size()); ++edge) {
+    const auto triangles = mesh.edge_triangles(edge);
+    if (triangles.size() < 3) continue;
+    for (const auto t : triangles) {
+      const auto rank = sheet_.ranks[t];
+      tiles_[rank].neighbours[role_with_edge(mesh, t, sheet_.crossings[rank], edge)] = none;
+    }
   }
 }
 
 void ChordOccupancy::add(const Polyline& line) {
   changed_.clear();
   for (std::size_t first = 0, last = 0; first < line.triangles.size(); first = last) {
-    const double longest = block_length * tracer_.separation_distance(line.triangles[first]);
+    const double longest = block_length * separation(line.triangles[first]);
     double length = 0;
     while (last < line.triangles.size() && length < longest && last - first < most_segments) {
       length += (line.points[last + 1] - line.points[last]).norm();
@@ -106,36 +119,88 @@ void ChordOccupancy::add_block(const Polyline& line, std::size_t first, std::siz
   for (std::size_t i = 0; i < queue_.size(); ++i) visit(queue_[i], line, first);
 }
 
-void ChordOccupancy::fill_block(const Polyline& line, std::size_t first, std::size_t last) {
-  block_.count = static_cast<int>(last - first);
-  const double reach = std::max(clearance_.stop, clearance_.seed) * (1 + guard) * (1 + distance_slack);
-  for (int i = 0; i < block_.count; ++i) {
-    const Vector start = line.points[first + i] - origin_, axis = line.points[first + i + 1] - line.points[first + i];
-    const auto set = [&](float* coordinates, double value) { coordinates[i] = static_cast<float>(value); };
-    set(block_.x, start.x()), set(block_.y, start.y()), set(block_.z, start.z());
-    set(block_.dx, axis.x()), set(block_.dy, axis.y()), set(block_.dz, axis.z());
-    const double square = axis.squaredNorm();
-    set(block_.inverse_square, square > 1e-30 ? 1 / square : 0);
-    set(block_.reach, reach * tracer_.separation_distance(line.triangles[first + i]));
-  }
-  block_.greatest_reach = *std::max_element(block_.reach, block_.reach + block_.count);
-  // Whole groups of lanes: what is too many is far away.
-  for (int i = block_.count; i % lanes != 0; ++i) {
-    block_.x[i] = block_.y[i] = block_.z[i] = 1e15F;
-    block_.dx[i] = block_.dy[i] = block_.dz[i] = block_.inverse_square[i] = block_.reach[i] = 0;
+void ChordOccupancy::Segments::add(const Vector& start, const Vector& axis) {
+  const auto set = [&](float* coordinates, double value) { coordinates[count] = static_cast<float>(value); };
+  set(x, start.x()), set(y, start.y()), set(z, start.z());
+  set(dx, axis.x()), set(dy, axis.y()), set(dz, axis.z());
+  const double length_square = axis.squaredNorm();
+  set(inverse_square, length_square > 1e-30 ? 1 / length_square : 0);
+  ++count;
+}
+
+void ChordOccupancy::Segments::fill_up() {
+  for (int i = count; i % lanes != 0; ++i) {
+    x[i] = y[i] = z[i] = 1e15F;
+    dx[i] = dy[i] = dz[i] = inverse_square[i] = 0;
   }
 }
 
-void ChordOccupancy::measure_distances(const Tile& tile) {
-  for (int i = 0; i < block_.count; i += lanes) {
-    Lanes x = tile.x - lanes_at(block_.x + i), y = tile.y - lanes_at(block_.y + i), z = tile.z - lanes_at(block_.z + i);
-    const auto dx = lanes_at(block_.dx + i), dy = lanes_at(block_.dy + i), dz = lanes_at(block_.dz + i);
-    const Lanes along = ((x * dx + y * dy + z * dz) * lanes_at(block_.inverse_square + i)).max(0.F).min(1.F);
-    x -= along * dx;
-    y -= along * dy;
-    z -= along * dz;
-    lanes_at(block_.distance + i) = (x * x + y * y + z * z).sqrt();
+float ChordOccupancy::Segments::distance(float x0, float y0, float z0) {
+  Lanes nearest = Lanes::Constant(1e30F);
+  for (int i = 0; i < count; i += lanes) {
+    Lanes px = x0 - lanes_at(x + i), py = y0 - lanes_at(y + i), pz = z0 - lanes_at(z + i);
+    const auto ax = lanes_at(dx + i), ay = lanes_at(dy + i), az = lanes_at(dz + i);
+    const Lanes along = ((px * ax + py * ay + pz * az) * lanes_at(inverse_square + i)).max(0.F).min(1.F);
+    px -= along * ax;
+    py -= along * ay;
+    pz -= along * az;
+    const Lanes result = px * px + py * py + pz * pz;
+    lanes_at(square + i) = result;
+    nearest = nearest.min(result);
   }
+  return std::sqrt(nearest.minCoeff());
+}
+
+void ChordOccupancy::fill_block(const Polyline& line, std::size_t first, std::size_t last) {
+  auto& segments = block_.segments;
+  segments.clear();
+  const double reach = std::max(clearance_.stop, clearance_.seed) * (1 + guard) * (1 + distance_slack);
+  for (auto i = first; i < last; ++i) {
+    block_.separation[i - first] = separation(line.triangles[i]);
+    block_.reach[i - first] = static_cast<float>(reach * block_.separation[i - first]);
+    segments.add(line.points[i] - origin_, line.points[i + 1] - line.points[i]);
+  }
+  const auto [least, greatest] = std::minmax_element(block_.reach, block_.reach + segments.count);
+  block_.least_reach = *least;
+  block_.greatest_reach = *greatest;
+  for (int i = segments.count; i % lanes != 0; ++i) block_.reach[i] = 0;
+  segments.fill_up();
+  simplify_block(line, first);
+}
+
+/// Joins consecutive segments of the block at hand that are nearly in line.
+void ChordOccupancy::simplify_block(const Polyline& line, std::size_t first) {
+  auto& coarse = block_.coarse;
+  coarse.clear();
+  block_.coarse_error = std::numeric_limits<float>::infinity();
+  if (block_.least_reach != block_.greatest_reach) return;
+  // All points between within this of the straight line: then no point of either is farther from the other.
+  const auto deviation = [&](std::size_t from, std::size_t to) {
+    double greatest = 0;
+    for (auto i = from + 1; i < to; ++i) {
+      greatest = std::max(greatest, distance_to_segment(line.points[i], line.points[from], line.points[to]));
+    }
+    return greatest;
+  };
+  const double tolerance = coarse_tolerance * block_.separation[0];
+  double error = 0;
+  const auto last = first + static_cast<std::size_t>(block_.segments.count);
+  for (auto from = first; from < last;) {
+    auto to = from + 1;
+    for (; to < last && to - from < most_joined; ++to) {
+      const double next = deviation(from, to + 1);
+      if (next > tolerance) break;
+      error = std::max(error, next);
+    }
+    coarse.add(line.points[from] - origin_, line.points[to] - line.points[from]);
+    from = to;
+  }
+  block_.coarse_error = static_cast<float>(error) * (1 + distance_slack) + slack_;
+  coarse.fill_up();
+}
+
+void ChordOccupancy::measure_distances(const Tile& tile) {
+  block_.nearest = block_.segments.distance(tile.x, tile.y, tile.z);
 }
 
 void ChordOccupancy::reach(std::int32_t triangle) {
@@ -143,53 +208,82 @@ void ChordOccupancy::reach(std::int32_t triangle) {
   if (tile.round == round_) return;
   tile.round = round_;
   queue_.push_back(triangle);
+  // By the time its turn comes these will be at hand.
+  __builtin_prefetch(&sheet_.corners[triangle]);
+  __builtin_prefetch(&sheet_.crossings[triangle]);
   for (const auto next : tile.neighbours) {
     if (next != none) __builtin_prefetch(&tiles_[next]);
   }
 }
 
 void ChordOccupancy::reach_neighbours(std::int32_t triangle) {
-  for (int side = 0; side < 3; ++side) {
-    const auto next = tiles_[triangle].neighbours[side];
+  for (const auto role : {low_high, low_middle, middle_high}) {
+    const auto next = tiles_[triangle].neighbours[role];
     if (next != none) {
       reach(next);
     } else {  // where the surface was cut at a non-manifold edge, it goes on for distances
-      for (const auto t : mesh_.edge_triangles(mesh_.triangle_edges()[triangle][side])) reach(t);
+      const auto edge = edge_of(mesh_, sheet_.mesh_triangles[triangle], sheet_.crossings[triangle], role);
+      for (const auto other : mesh_.edge_triangles(edge)) reach(sheet_.ranks[other]);
     }
   }
 }
 
 void ChordOccupancy::visit(std::int32_t triangle, const Polyline& line, std::size_t first) {
   const auto& tile = tiles_[triangle];
-  const float radius = std::abs(tile.radius);
-  measure_distances(tile);
+  const float radius = std::abs(tile.radius), error = block_.coarse_error;
   // A jagged border can part triangles that lie side by side: there the search goes on one edge farther.
-  if (nearest_capsule(1) > (tile.radius < 0 ? 3 * radius : radius)) return;
+  const float limit = tile.radius < 0 ? 3 * radius : radius;
+  const float coarse = block_.coarse.distance(tile.x, tile.y, tile.z);
+  if (coarse - error > limit + block_.greatest_reach) return;
+  bool is_measured = false;
+  const auto measure = [&] {
+    if (!is_measured) measure_distances(tile);
+    is_measured = true;
+  };
+  if (coarse + error > limit + block_.least_reach) {
+    measure();
+    if (nearest_capsule(1) > limit) return;
+  }
   reach_neighbours(triangle);
-  mark(triangle, line, first, clearance_.stop, stopped_);
-  if (has_seed_sets_) mark(triangle, line, first, clearance_.seed, unseeded_);
+  const double greatest = std::max(clearance_.stop, clearance_.seed);
+  const auto mark_in = [&](double clearance, IntervalSets& sets) {
+    const Marking marking{clearance, static_cast<float>(clearance / greatest), sets};
+    if (sets.is_full(triangle) || try_to_fill(triangle, coarse + error, marking)) return;
+    measure();
+    mark(triangle, line, first, marking);
+  };
+  mark_in(clearance_.stop, stopped_);
+  if (has_seed_sets_) mark_in(clearance_.seed, unseeded_);
+}
+
+/// Fills the triangle if a disc around it lies in a capsule whose axis is at most so far away.
+bool ChordOccupancy::try_to_fill(std::int32_t triangle, float distance, const Marking& marking) {
+  const float radius = std::abs(tiles_[triangle].radius);
+  if (!(distance + radius <= (marking.share - 3 * distance_slack) * block_.least_reach)) return false;
+  marking.sets.fill(triangle);
+  if (&marking.sets == &unseeded()) changed_.push_back(triangle);
+  return true;
 }
 
 float ChordOccupancy::nearest_capsule(float share) const {
+  if (block_.least_reach == block_.greatest_reach) return block_.nearest - share * block_.greatest_reach;
   Lanes nearest = Lanes::Constant(1e30F);
-  for (int i = 0; i < block_.count; i += lanes) {
-    nearest = nearest.min(lanes_at(block_.distance + i) - share * lanes_at(block_.reach + i));
+  for (int i = 0; i < block_.segments.count; i += lanes) {
+    nearest = nearest.min(lanes_at(block_.segments.square + i).sqrt() - share * lanes_at(block_.reach + i));
   }
   return nearest.minCoeff();
 }
 
 /// Marks the chords within a clearance of the block's segments.
-void ChordOccupancy::mark(std::int32_t triangle, const Polyline& line, std::size_t first, double clearance,
-                          IntervalSets& sets) {
-  if (sets.is_full(triangle)) return;
+void ChordOccupancy::mark(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking) {
+  auto& sets = marking.sets;
   const float radius = std::abs(tiles_[triangle].radius);
-  const auto share = static_cast<float>(clearance / std::max(clearance_.stop, clearance_.seed));
-  const float nearest = nearest_capsule(share);
+  const float nearest = nearest_capsule(marking.share);
   if (nearest > radius) return;
   if (nearest + radius <= -3 * distance_slack * block_.greatest_reach) {
     sets.fill(triangle);  // a disc around it lies in one capsule
   } else {
-    mark_exactly(triangle, line, first, {share, clearance, sets});
+    mark_exactly(triangle, line, first, marking);
   }
   if (&sets == &unseeded()) changed_.push_back(triangle);
 }
@@ -197,36 +291,41 @@ void ChordOccupancy::mark(std::int32_t triangle, const Polyline& line, std::size
 void ChordOccupancy::mark_exactly(std::int32_t triangle, const Polyline& line, std::size_t first,
                                   const Marking& marking) {
   auto& sets = marking.sets;
-  const ChordFrame frame(mesh_, triangle, tracer_.crossings()[triangle]);
+  const ChordFrame frame(sheet_.low(triangle), sheet_.middle(triangle), sheet_.high(triangle),
+                         sheet_.crossings[triangle].split);
   const float radius = std::abs(tiles_[triangle].radius);
-  const auto gap = [&](int i) { return block_.distance[i] - marking.share * block_.reach[i]; };
-  const auto add = [&](int i) {
-    if (gap(i) > radius) return;
-    const double separation = tracer_.separation_distance(line.triangles[first + i]);
-    const Capsule capsule{line.points[first + i], line.points[first + i + 1],
-                          marking.clearance * separation * (1 + guard)};
+  // Consecutive capsules share a point.
+  int last_end = -1;
+  Vector last_point;
+  /// Adds a capsule's chords, but not those that the one before or behind it takes anyway; is it the one behind?
+  const auto add = [&](int i, bool is_left_to_next) {
+    const double* separations = block_.separation + i;
+    const Vector start = last_end == i ? last_point : frame.flat(line.points[first + i]);
+    last_point = frame.flat(line.points[first + i + 1]);
+    last_end = i + 1;
+    const Capsule capsule{start, last_point, marking.clearance * *separations * (1 + guard)};
+    const auto [is_before_start, is_beyond_end] = frame.range_along(capsule);
+    if (is_beyond_end && i + 1 < block_.segments.count && separations[1] >= separations[0]) return true;
+    if (is_before_start && i > 0 && !is_left_to_next && separations[-1] >= separations[0]) return false;
     const auto reach = frame.reach(capsule);
-    if (!reach) return;
-    const Interval within{std::max(0.0, reach->chords.low), std::min(1.0, reach->chords.high)};
-    if (within.low > within.high || sets.contains(triangle, within)) return;
-    const double margin = guard * separation / frame.width();
-    if (const auto chords = frame.shadow(capsule, *reach)) {
+    if (!reach) return false;
+    const Interval within{std::max(0.0, reach->low), std::min(1.0, reach->high)};
+    if (within.low > within.high || sets.contains(triangle, within)) return false;
+    if (const auto chords = frame.shadow(capsule, frame.look(capsule))) {
+      const double margin = guard * *separations / frame.width();
       sets.add(triangle, {chords->low - margin, chords->high + margin});
     }
+    return false;
   };
-  // The nearest first: it often spares the others.
-  int nearest = 0;
-  for (int i = 1; i < block_.count; ++i) {
-    if (gap(i) < gap(nearest)) nearest = i;
-  }
-  add(nearest);
-  for (int i = 0; i < block_.count && !sets.is_full(triangle); ++i) {
-    if (i != nearest) add(i);
+  bool is_left_to_next = false;
+  for (int i = 0; i < block_.segments.count && !sets.is_full(triangle); ++i) {
+    const float limit = radius + marking.share * block_.reach[i];
+    if (block_.segments.square[i] <= limit * limit) is_left_to_next = add(i, is_left_to_next);
   }
 }
 
 double ChordOccupancy::free_share(std::int32_t triangle) const {
-  const auto& crossings = tracer_.crossings()[triangle];
+  const auto& crossings = sheet_.crossings[triangle];
   if (unseeded().is_full(triangle)) return 0;
   double share = 0;
   for (const auto& gap : unseeded().gaps(triangle)) {
@@ -237,13 +336,13 @@ double ChordOccupancy::free_share(std::int32_t triangle) const {
 
 double ChordOccupancy::coverage() const {
   double free = 0, all = 0;
-  for (std::int32_t t = 0; t < static_cast<std::int32_t>(tiles_.size()); ++t) {
-    if (!tracer_.has_direction(t)) continue;
-    const double area = mesh_.triangle_areas()[t];
+  for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
+    if (!sheet_.has_direction(t)) continue;
+    const double area = mesh_.triangle_areas()[sheet_.mesh_triangles[t]];
     all += area;
     if (stopped_.is_full(t)) continue;
     for (const auto& gap : stopped_.gaps(t)) {
-      free += area * (area_share(tracer_.crossings()[t], gap.high) - area_share(tracer_.crossings()[t], gap.low));
+      free += area * (area_share(sheet_.crossings[t], gap.high) - area_share(sheet_.crossings[t], gap.low));
     }
   }
   return 1 - free / all;

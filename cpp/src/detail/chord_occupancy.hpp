@@ -6,15 +6,16 @@
 #include <span>
 #include <vector>
 
-#include "detail/crossings.hpp"
 #include "detail/interval_sets.hpp"
+#include "detail/large_array.hpp"
+#include "detail/sheet.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/occupancy.hpp"
 #include "pectinate/surface_mesh.hpp"
 
 namespace pectinate::detail {
 
-/// A polyline whose segment i lies in triangle i, on the chord with coordinate i.
+/// A polyline whose segment i lies in triangle i of the sheet, on the chord with coordinate i.
 struct Polyline {
   std::vector<Vector> points;
   std::vector<std::int32_t> triangles;
@@ -26,7 +27,7 @@ struct Polyline {
 ///
 /// Distance is Euclidean, between whatever is joined on the surface through triangles that are near. The separation
 /// distance is that of the triangle in which the placed streamline lies. The cost of adding a streamline is that of the
-/// area that comes within reach.
+/// area that comes within reach. Triangles are those of the tracer's sheet.
 class ChordOccupancy {
  public:
   ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const Clearance& clearance);
@@ -54,50 +55,74 @@ class ChordOccupancy {
   static constexpr double guard = 2e-6;
 
   /// What is known of a triangle at a glance, in single precision, relative to `origin_`; a cache line holds two.
-  struct Tile {
+  struct alignas(32) Tile {
     float x, y, z;
-    float radius;  ///< about the centroid; negative at the surface's border
-    std::array<std::int32_t, 3> neighbours;
-    std::uint32_t round;  ///< in which it was reached last
+    float radius;                            ///< about the centroid; negative at the surface's border
+    std::array<std::int32_t, 3> neighbours;  ///< by Role
+    std::uint32_t round;                     ///< in which it was reached last
   };
   static constexpr int lanes = 8;
   static constexpr int most_segments = 16 * lanes;
 
-  /// The segments of a block, laid out for distances from one point to all of them.
-  struct Block {
+  /// Segments laid out for distances from one point to all of them.
+  struct Segments {
     alignas(64) float x[most_segments], y[most_segments], z[most_segments];
     float dx[most_segments], dy[most_segments], dz[most_segments], inverse_square[most_segments];
-    float reach[most_segments];     ///< greatest radius of the segment's capsule
-    float distance[most_segments];  ///< from the point at hand
-    float greatest_reach = 0;
+    float square[most_segments];  ///< of the distance from the point at hand
     int count = 0;
+
+    void clear() { count = 0; }
+    void add(const Vector& start, const Vector& axis);
+    /// Whole groups of lanes: what is too many is far away.
+    void fill_up();
+    /// From a point, to the nearest; sets `square`.
+    float distance(float x0, float y0, float z0);
+  };
+
+  /// A stretch of a streamline.
+  struct Block {
+    Segments segments;
+    double separation[most_segments];
+    float reach[most_segments];  ///< greatest radius of the segment's capsule
+    float least_reach = 0, greatest_reach = 0;
+    float nearest = 0;  ///< distance from the point at hand to the nearest segment
+    /// Fewer and longer segments that are as near to any point as the true ones, but for the error.
+    Segments coarse;
+    float coarse_error = 0;
+  };
+
+  /// One of the two kinds of marks: capsules of radius `clearance`, which is this share of `reach`, marked in `sets`.
+  struct Marking {
+    double clearance;
+    float share;
+    IntervalSets& sets;
   };
 
   void add_block(const Polyline& line, std::size_t first, std::size_t last);
   void fill_block(const Polyline& line, std::size_t first, std::size_t last);
+  void simplify_block(const Polyline& line, std::size_t first);
   void measure_distances(const Tile& tile);
   void reach(std::int32_t triangle);
   void reach_neighbours(std::int32_t triangle);
   void visit(std::int32_t triangle, const Polyline& line, std::size_t first);
   /// From the point at hand to the nearest capsule, whose radii are this share of `reach`; negative inside.
   float nearest_capsule(float share) const;
-
-  /// One of the two kinds of marks: capsules of radius `clearance`, which is this share of `reach`, marked in `sets`.
-  struct Marking {
-    float share;
-    double clearance;
-    IntervalSets& sets;
-  };
-  void mark(std::int32_t triangle, const Polyline& line, std::size_t first, double clearance, IntervalSets& sets);
+  void mark(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking);
+  bool try_to_fill(std::int32_t triangle, float distance, const Marking& marking);
   void mark_exactly(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking);
+  double separation(std::int32_t triangle) const {
+    return tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
+  }
 
   const SurfaceMesh& mesh_;
   const StreamlineTracer& tracer_;
+  const Sheet& sheet_;
   Clearance clearance_;
   bool has_seed_sets_;
   IntervalSets stopped_, unseeded_;
   Vector origin_;
-  std::vector<Tile> tiles_;
+  float slack_;  // of single precision, for the surface's size
+  LargeArray<Tile> tiles_;
   std::uint32_t round_ = 0;
   std::vector<std::int32_t> queue_, changed_;
   Block block_;

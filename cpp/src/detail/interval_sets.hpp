@@ -1,25 +1,34 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "detail/capsule.hpp"
+#include "detail/large_array.hpp"
 
 namespace pectinate::detail {
 
 /// For each of many items, a subset of [0, 1]: a union of closed intervals that only grows. Most are empty, all of
 /// [0, 1], or one interval.
+///
+/// Each item has a summary in sixteenths of [0, 1] that answers most questions.
 class IntervalSets {
  public:
-  explicit IntervalSets(std::size_t count) : first_(count, empty) {}
+  explicit IntervalSets(std::size_t count) : items_(count) {}
 
-  bool is_empty(std::int32_t item) const { return first_[item] == empty; }
-  bool is_full(std::int32_t item) const { return first_[item] == full; }
+  bool is_empty(std::int32_t item) const { return items_[item].first == empty; }
+  bool is_full(std::int32_t item) const { return items_[item].first == full; }
 
-  bool contains(std::int32_t item, double x) const { return contains(item, Interval{x, x}); }
+  bool contains(std::int32_t item, double x) const {
+    const auto& [first, taken, touched] = items_[item];
+    const int cell = std::clamp(static_cast<int>(x * cells), 0, cells - 1);
+    if (taken >> cell & 1) return true;
+    return (touched >> cell & 1) && contains(item, Interval{x, x});
+  }
   bool contains(std::int32_t item, const Interval& interval) const {
-    auto node = first_[item];
+    auto node = items_[item].first;
     for (; node >= 0; node = nodes_[node].next) {
       if (interval.low >= nodes_[node].interval.low && interval.high <= nodes_[node].interval.high) return true;
     }
@@ -37,6 +46,11 @@ class IntervalSets {
 
  private:
   static constexpr std::int32_t empty = -1, full = -2;
+  static constexpr int cells = 16;
+  struct Item {
+    std::int32_t first = empty;            // node, empty or full
+    std::uint16_t taken = 0, touched = 0;  // by cell: wholly, and at least partly
+  };
   struct Node {
     Interval interval;
     std::int32_t next;
@@ -45,9 +59,65 @@ class IntervalSets {
   std::int32_t make_node(const Node& node);
   void release(std::int32_t node);
 
-  std::vector<std::int32_t> first_;  // node, empty or full
+  LargeArray<Item> items_;
   std::vector<Node> nodes_;
   std::int32_t released_ = empty;  // list of nodes for reuse
 };
+
+inline void IntervalSets::fill(std::int32_t item) {
+  for (auto node = items_[item].first; node >= 0;) {
+    const auto next = nodes_[node].next;
+    release(node);
+    node = next;
+  }
+  items_[item] = {full, 0xffff, 0xffff};
+}
+
+inline void IntervalSets::add(std::int32_t item, Interval interval) {
+  if (is_full(item)) return;
+  // Take out what it touches, then put in the union.
+  auto before = empty;
+  auto& [first, taken, touched] = items_[item];
+  for (auto node = first; node >= 0;) {
+    const auto [other, next] = nodes_[node];
+    if (other.low <= interval.high && other.high >= interval.low) {
+      interval = {std::min(interval.low, other.low), std::max(interval.high, other.high)};
+      (before >= 0 ? nodes_[before].next : first) = next;
+      release(node);
+    } else {
+      before = node;
+    }
+    node = next;
+  }
+  if (interval.low <= 0 && interval.high >= 1) {
+    fill(item);
+  } else {
+    first = make_node({interval, first});
+    // Cells [low, high), rounded inwards and outwards; a power of two scales exactly.
+    const auto bits = [](int from, int to) {
+      return static_cast<std::uint16_t>(from < to ? (1U << to) - (1U << from) : 0U);
+    };
+    const double low = std::max(interval.low, 0.0) * cells, high = std::min(interval.high, 1.0) * cells;
+    const int low_cell = static_cast<int>(low), high_cell = static_cast<int>(high);
+    taken |= bits(low_cell + (low > low_cell), high_cell);
+    touched |= bits(std::min(low_cell, cells - 1), std::min(high_cell + 1, cells));
+  }
+}
+
+inline std::int32_t IntervalSets::make_node(const Node& node) {
+  if (released_ < 0) {
+    nodes_.push_back(node);
+    return static_cast<std::int32_t>(nodes_.size()) - 1;
+  }
+  const auto index = released_;
+  released_ = nodes_[index].next;
+  nodes_[index] = node;
+  return index;
+}
+
+inline void IntervalSets::release(std::int32_t node) {
+  nodes_[node].next = released_;
+  released_ = node;
+}
 
 }  // namespace pectinate::detail

@@ -5,9 +5,9 @@
 #include <optional>
 #include <queue>
 
-#include "detail/crossings.hpp"
-#include "detail/edge_point.hpp"
 #include "detail/self_free_run.hpp"
+#include "detail/sheet.hpp"
+#include "detail/trajectories.hpp"
 #include "detail/visited_chords.hpp"
 
 namespace pectinate::detail {
@@ -17,62 +17,31 @@ namespace {
 constexpr double hugging_bonus = 1.05;
 /// Seeds of hugging lines lie this far outside the band that they hug, in separation distances.
 constexpr double hugging_gap = 1e-6;
-/// Rings of triangles beside a trajectory of the pool that need no other.
-constexpr int most_rings = 3;
-/// Stored chords per triangle that are usual.
-constexpr std::size_t usual_chords = 3;
+/// Rings of triangles beside a trajectory of the pool that need no other. The fewer lines there will be, the more it
+/// pays to choose them well: beyond this many edges a separation distance, the pool is denser.
+constexpr int usual_rings = 2, rings_of_dense_pool = 1;
+constexpr double sparse_separation = 6;
+/// Room for stored chords per triangle, seldom all used.
+constexpr std::size_t most_usual_chords = 8;
 /// Narrower gaps between occupied chords hold no streamline.
 constexpr double least_gap = 4 * least_position;
-
-/// One chord of a trajectory; `direction` says through which side it leaves.
-struct Chord {
-  double coordinate;
-  float length;
-  std::int32_t code;  ///< 2 * triangle, + 1 if it leaves through low_high
-
-  std::int32_t triangle() const { return code >> 1; }
-  bool leaves_through_low_high() const { return code & 1; }
-};
-
-using Chords = std::vector<Chord>;
-
-/// A stretch [first, last) of the stored chords.
-struct Stretch {
-  std::int64_t first, last;
-};
-
-/// A curve of the field, from stop to stop.
-struct Trajectory {
-  Stretch stretch;
-  std::array<StopReason, 2> ends;
-  double bonus;
-};
-
-/// A stretch of a trajectory under the length that it had when it was last looked at; it only ever gets shorter.
-struct Piece {
-  double key;
-  Stretch stretch;
-  std::int32_t trajectory;
-
-  bool operator<(const Piece& other) const {
-    return key != other.key ? key < other.key : stretch.first > other.stretch.first;
-  }
-};
 
 class LongestFirst {
  public:
   LongestFirst(const SurfaceMesh& mesh, const StreamlineTracer& tracer, double minimum_length,
-               ChordOccupancy& occupancy, const std::function<void(const Streamline&)>& place)
+               ChordOccupancy& occupancy, const std::function<void(const PlacedLine&)>& place)
       : mesh_(mesh),
         tracer_(tracer),
-        crossings_(tracer.crossings()),
+        sheet_(tracer.sheet()),
+        crossings_(sheet_.crossings),
+        separation_(tracer.options().separation_distances.empty() ? tracer.options().separation_distance : 0),
         minimum_length_(minimum_length),
         occupancy_(occupancy),
         place_(place),
         hugged_(crossings_.size(), 0) {}
 
   bool run(const std::function<bool()>& go_on) {
-    chords_.reserve(usual_chords * crossings_.size());
+    chords_.reserve(most_usual_chords * crossings_.size());
     if (!fill_pool(go_on) || !empty_heap(go_on)) return false;
     // Where all gaps together gave no streamline, they never will.
     for (std::int64_t before = -1; before != placed_count_ && push_gaps(go_on);) {
@@ -83,6 +52,10 @@ class LongestFirst {
   }
 
  private:
+  double separation(std::int32_t triangle) const {
+    return separation_ > 0 ? separation_ : tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
+  }
+
   // Tracing ---------------------------------------------------------------------------------------------------------
 
   /// Appends the chords that follow on one, leaving through a side; stops at occupied ones if asked.
@@ -90,14 +63,14 @@ class LongestFirst {
     auto triangle = start.triangle();
     double coordinate = start.coordinate;
     for (std::int64_t step = 0; step < tracer_.options().max_steps; ++step) {
-      const auto& way_out = crossings_[triangle].exits[exit];
+      const auto way_out = crossings_[triangle].exit(exit);
       if (way_out.triangle < 0) return way_out.stop_reason;
       const double position = edge_position(crossings_[triangle], exit, coordinate);
       triangle = way_out.triangle;
       const auto& crossings = crossings_[triangle];
       coordinate = chord_coordinate(crossings, way_out.role, position);
       if (mind_others && occupancy_.stopped().contains(triangle, coordinate)) return StopReason::near_other;
-      if (visited_.revisit(triangle, coordinate, crossings.width, tracer_.separation_distance(triangle))) {
+      if (visited_.revisit(triangle, coordinate, crossings.width, separation(triangle))) {
         return StopReason::near_itself;
       }
       exit = exit_role(crossings, way_out.role, coordinate);
@@ -140,8 +113,8 @@ class LongestFirst {
     return sum;
   }
 
-  void push(const Stretch& stretch, std::int32_t trajectory) {
-    const double key = length(stretch);
+  void push(const Stretch& stretch, std::int32_t trajectory) { push(stretch, length(stretch), trajectory); }
+  void push(const Stretch& stretch, double key, std::int32_t trajectory) {
     if (stretch.first < stretch.last && key >= minimum_length_) {
       heap_.push({key * trajectories_[trajectory].bonus, stretch, trajectory});
     }
@@ -154,11 +127,11 @@ class LongestFirst {
     for (const double length : mesh_.edge_lengths()) edge += length;
     edge /= static_cast<double>(mesh_.edge_lengths().size());
     std::vector<bool> served(crossings_.size(), false);
-    for (std::int32_t t = 0; t < static_cast<std::int32_t>(crossings_.size()); ++t) {
+    for (const auto t : sheet_.ranks) {  // in the mesh's order: the sheet's depends on the axes
       if (served[t] || occupancy_.stopped().is_full(t)) continue;
       if (!go_on()) return false;
       const auto stretch = add_trajectory(t, 0.5, false, 1).stretch;
-      const int rings = std::clamp(static_cast<int>(tracer_.separation_distance(t) / (2 * edge)), 1, most_rings);
+      const int rings = separation(t) > sparse_separation * edge ? rings_of_dense_pool : usual_rings;
       serve(stretch, rings, served);
     }
     return true;
@@ -172,8 +145,7 @@ class LongestFirst {
     for (int ring = 0; ring < rings; ++ring, front.swap(next)) {
       next.clear();
       for (const auto t : front) {
-        for (int side = 0; side < 3; ++side) {
-          const auto other = mesh_.neighbour(t, side).triangle;
+        for (const auto other : crossings_[t].neighbours) {
           if (other < 0 || served[other]) continue;
           served[other] = true;
           next.push_back(other);
@@ -188,7 +160,7 @@ class LongestFirst {
     for (const auto t : occupancy_.changed()) {
       if (hugged_[t] == round_ || occupancy_.unseeded().is_full(t)) continue;
       hugged_[t] = round_;
-      const double gap = hugging_gap * tracer_.separation_distance(t) / crossings_[t].width;
+      const double gap = hugging_gap * separation(t) / crossings_[t].width;
       for (const auto& [low, high] : occupancy_.unseeded().intervals(t)) {
         for (const double coordinate : {low - gap, high + gap}) {
           if (!(coordinate > least_position && coordinate < 1 - least_position)) continue;
@@ -203,7 +175,8 @@ class LongestFirst {
   /// A candidate through every gap that is left; false if none is, or if it was stopped.
   bool push_gaps(const std::function<bool()>& go_on) {
     bool any = false;
-    for (std::int32_t t = 0; t < static_cast<std::int32_t>(crossings_.size()); ++t) {
+    for (const auto t : sheet_.ranks) {
+      if (occupancy_.unseeded().is_full(t)) continue;
       for (const auto& gap : occupancy_.unseeded().gaps(t)) {
         if (gap.high - gap.low < least_gap) continue;
         if (!go_on()) return true;  // the heap says so too
@@ -225,26 +198,39 @@ class LongestFirst {
       if (!go_on()) return false;
       const auto piece = heap_.top();
       heap_.pop();
+      if (!heap_.empty()) prefetch(heap_.top().stretch);
       if (const auto best = longest_free(piece)) {
-        if (is_still_first(*best, piece.trajectory)) {
-          place_best(*best, piece.trajectory);
+        const auto& [stretch, length] = *best;
+        if (is_still_first(length, piece.trajectory)) {
+          place_best(stretch, piece.trajectory);
         } else {
-          push(*best, piece.trajectory);
+          push(stretch, length, piece.trajectory);
         }
       }
     }
     return true;
   }
 
-  bool is_still_first(const Stretch& stretch, std::int32_t trajectory) const {
-    const double now = length(stretch);
+  /// The next piece is elsewhere in memory.
+  void prefetch(const Stretch& stretch) const {
+    constexpr std::int64_t at_first = 32, chords_per_line = 64 / sizeof(Chord);
+    for (auto i = stretch.first; i < std::min(stretch.last, stretch.first + at_first); i += chords_per_line) {
+      __builtin_prefetch(&chords_[i]);
+    }
+  }
+
+  bool is_still_first(double now, std::int32_t trajectory) const {
     return now >= minimum_length_ && (heap_.empty() || now * trajectories_[trajectory].bonus >= heap_.top().key);
   }
 
+  struct FreeStretch {
+    Stretch stretch;
+    double length;
+  };
+
   /// The longest free stretch of a piece; the others go back to the heap.
-  std::optional<Stretch> longest_free(const Piece& piece) {
-    std::optional<Stretch> best;
-    double best_length = 0;
+  std::optional<FreeStretch> longest_free(const Piece& piece) {
+    std::optional<FreeStretch> best;
     for (auto i = piece.stretch.first; i < piece.stretch.last;) {
       if (is_stopped(chords_[i])) {
         ++i;
@@ -259,12 +245,11 @@ class LongestFirst {
       }
       i = run.last;
       if (!can_start) continue;
-      if (best && run_length <= best_length) {
-        push(run, piece.trajectory);
+      if (best && run_length <= best->length) {
+        push(run, run_length, piece.trajectory);
       } else {
-        if (best) push(*best, piece.trajectory);
-        best = run;
-        best_length = run_length;
+        if (best) push(best->stretch, best->length, piece.trajectory);
+        best = {run, run_length};
       }
     }
     return best;
@@ -280,20 +265,20 @@ class LongestFirst {
   /// Places a stretch, or, where it comes back to itself, the longest part of it that does not.
   void place_best(const Stretch& stretch, std::int32_t trajectory) {
     make_polyline(stretch);
-    const double separation = tracer_.separation_distance(chords_[stretch.first].triangle());
-    const auto run = longest_self_free_run(polyline_.points, separation, 2 * separation);
+    const double distance = separation(chords_[stretch.first].triangle());
+    const auto run = longest_self_free_run(polyline_.points, distance, 2 * distance);
     const Stretch part{stretch.first + static_cast<std::int64_t>(run.first),
                        stretch.first + static_cast<std::int64_t>(run.last)};
     if (part.last - part.first < stretch.last - stretch.first) {
       push({stretch.first, part.first}, trajectory);
       push({part.last, stretch.last}, trajectory);
-      if (!is_still_first(part, trajectory)) {
+      if (!is_still_first(length(part), trajectory)) {
         push(part, trajectory);
         return;
       }
       make_polyline(part);
     }
-    const auto line = make_streamline(part, trajectory);  // while what stops it is not yet in its own neighbourhood
+    const auto line = make_line(part, trajectory);  // while what stops it is not yet in its own neighbourhood
     occupancy_.add(polyline_);
     place_(line);
     ++placed_count_;
@@ -305,39 +290,47 @@ class LongestFirst {
     polyline_.triangles.clear();
     polyline_.chords.clear();
     for (auto i = stretch.first; i < stretch.last; ++i) {
-      if (i == stretch.first) polyline_.points.push_back(position(mesh_, entry_point(chords_[i])));
-      polyline_.points.push_back(position(mesh_, exit_point(chords_[i])));
-      polyline_.triangles.push_back(chords_[i].triangle());
-      polyline_.chords.push_back(chords_[i].coordinate);
+      const auto& chord = chords_[i];
+      if (i == stretch.first) polyline_.points.push_back(point_on(chord, entry_side(chord)));
+      polyline_.points.push_back(point_on(chord, exit_side(chord)));
+      polyline_.triangles.push_back(chord.triangle());
+      polyline_.chords.push_back(chord.coordinate);
     }
   }
 
-  EdgePoint point_on(const Chord& chord, Role role) const {
-    const auto& crossings = crossings_[chord.triangle()];
-    return {crossings.exits[role].edge, edge_position(crossings, role, chord.coordinate)};
+  Vector point_on(const Chord& chord, Role side) const {
+    return sheet_.point(chord.triangle(), side, chord.coordinate);
   }
   Role short_side(const Chord& chord) const {
     return exit_role(crossings_[chord.triangle()], low_high, chord.coordinate);
   }
-  EdgePoint exit_point(const Chord& chord) const {
-    return point_on(chord, chord.leaves_through_low_high() ? low_high : short_side(chord));
-  }
-  EdgePoint entry_point(const Chord& chord) const {
-    return point_on(chord, chord.leaves_through_low_high() ? short_side(chord) : low_high);
+  Role exit_side(const Chord& chord) const { return chord.leaves_through_low_high() ? low_high : short_side(chord); }
+  Role entry_side(const Chord& chord) const { return chord.leaves_through_low_high() ? short_side(chord) : low_high; }
+
+  /// Weights of the corners of the chord's mesh triangle at its end on a side.
+  Vec3 barycentric(const Chord& chord, Role side) const {
+    const auto& crossings = crossings_[chord.triangle()];
+    const double along = side_position(crossings, side, chord.coordinate);
+    const int middle = crossings.middle, low = (middle + 1) % 3, high = (middle + 2) % 3;
+    Vec3 weights{0, 0, 0};
+    weights[side == middle_high ? middle : low] = 1 - along;
+    weights[side == low_middle ? middle : high] = along;
+    return weights;
   }
 
   /// The streamline of the stretch whose polyline is at hand.
-  Streamline make_streamline(const Stretch& stretch, std::int32_t trajectory) const {
-    Streamline line;
-    line.points.push_back(entry_point(chords_[stretch.first]));
+  PlacedLine make_line(const Stretch& stretch, std::int32_t trajectory) const {
+    PlacedLine line;
+    line.points = polyline_.points;
     for (auto i = stretch.first; i < stretch.last; ++i) {
-      line.points.push_back(exit_point(chords_[i]));
-      line.triangles.push_back(chords_[i].triangle());
+      line.triangles.push_back(sheet_.mesh_triangles[chords_[i].triangle()]);
+      line.barycentric.push_back(barycentric(chords_[i], entry_side(chords_[i])));
     }
+    const auto& last = chords_[stretch.last - 1];
+    line.barycentric.push_back(barycentric(last, exit_side(last)));
     for (std::size_t i = 1; i < polyline_.points.size(); ++i) {
       line.length += (polyline_.points[i] - polyline_.points[i - 1]).norm();
     }
-    line.seed_index = std::ssize(line.points) / 2;
     const auto& whole = trajectories_[trajectory];
     const auto reason_at = [&](std::int64_t outside) {
       return is_stopped(chords_[outside]) ? StopReason::near_other : StopReason::near_itself;
@@ -349,10 +342,12 @@ class LongestFirst {
 
   const SurfaceMesh& mesh_;
   const StreamlineTracer& tracer_;
-  const std::vector<TriangleCrossings>& crossings_;
+  const Sheet& sheet_;
+  const LargeArray<TriangleCrossings>& crossings_;
+  double separation_;  // 0 where it varies
   double minimum_length_;
   ChordOccupancy& occupancy_;
-  const std::function<void(const Streamline&)>& place_;
+  const std::function<void(const PlacedLine&)>& place_;
 
   Chords chords_;  // of all trajectories, one after the other
   std::vector<Trajectory> trajectories_;
@@ -369,7 +364,7 @@ class LongestFirst {
 }  // namespace
 
 bool place_longest_first(const SurfaceMesh& mesh, const StreamlineTracer& tracer, double minimum_length,
-                         ChordOccupancy& occupancy, const std::function<void(const Streamline&)>& place,
+                         ChordOccupancy& occupancy, const std::function<void(const PlacedLine&)>& place,
                          const std::function<bool()>& go_on) {
   return LongestFirst(mesh, tracer, minimum_length, occupancy, place).run(go_on);
 }

@@ -1,13 +1,26 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 #include "detail/chord_occupancy.hpp"
+#include "detail/vec.hpp"
 #include "pectinate/surface_mesh.hpp"
 #include "pectinate/tracing.hpp"
 
 namespace pectinate::detail {
+
+/// A streamline to be placed.
+struct PlacedLine {
+  std::vector<Vector> points;
+  std::vector<std::int32_t> triangles;  ///< of the mesh, per segment
+  std::vector<Vec3> barycentric;        ///< per point, in the triangle of the segment after it, or of the last
+  double length = 0;
+  std::array<StopReason, 2> stop_reasons{};
+};
 
 /// Places the longest streamline that still fits, again and again, until none does.
 ///
@@ -15,7 +28,7 @@ namespace pectinate::detail {
 /// came to the end. Deterministic without random numbers. Ends always: every placed streamline takes chords of positive
 /// measure, every seed that gives none is retired.
 bool place_longest_first(const SurfaceMesh& mesh, const StreamlineTracer& tracer, double minimum_length,
-                         ChordOccupancy& occupancy, const std::function<void(const Streamline&)>& place,
+                         ChordOccupancy& occupancy, const std::function<void(const PlacedLine&)>& place,
                          const std::function<bool()>& go_on);
 
 }  // namespace pectinate::detail

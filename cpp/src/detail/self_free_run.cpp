@@ -4,71 +4,75 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdint>
-#include <optional>
-#include <utility>
 
 #include "detail/segment_distance.hpp"
 
 namespace pectinate::detail {
 namespace {
 
-/// Segments sorted by the cell of their midpoint, in a grid so coarse that near segments lie in neighbouring cells.
-class SegmentGrid {
+/// A polyline in a tree of balls: each holds a stretch of it, and those below hold its parts.
+class BallTree {
  public:
-  SegmentGrid(const std::vector<Vector>& points, double cell_size) : points_(points), cell_size_(cell_size) {
-    for (std::size_t i = 0; i + 1 < points.size(); ++i) entries_.push_back({key(cell_of(i)), i});
-    std::sort(entries_.begin(), entries_.end());
+  static constexpr std::size_t branching = 8;
+
+  explicit BallTree(const std::vector<Vector>& points) : points_(points) {
+    const auto count = points.size() - 1;
+    for (std::size_t size = branching; levels_.empty() || levels_.back().size() > 1; size *= branching) {
+      auto& level = levels_.emplace_back();
+      for (std::size_t first = 0; first < count; first += size) {
+        level.push_back(ball_around(first, std::min(first + size, count)));
+      }
+    }
   }
 
-  /// Calls visit(segment) for all segments in the cells around that of one.
+  /// Calls visit(first, last) for each lowest stretch of segments that comes nearer than `distance` to the one with
+  /// index `leaf` and does not lie behind it; the last ones first.
   template <class Visit>
-  void visit_around(std::size_t segment, const Visit& visit) {
-    find_rows(cell_of(segment));
-    for (const auto& [first, last] : rows_) {
-      for (auto entry = first; entry != last; ++entry) visit(entry->segment);
-    }
+  void visit_near(std::size_t leaf, double distance, const Visit& visit) const {
+    descend(levels_.size() - 1, 0, {leaf, distance}, visit);
   }
 
  private:
-  using Cell = std::array<std::int64_t, 3>;
-  struct Entry {
-    std::uint64_t key;
-    std::size_t segment;
-    auto operator<=>(const Entry&) const = default;
+  struct Ball {
+    Vector centre;
+    double radius;
+  };
+  struct Query {
+    std::size_t leaf;
+    double distance;
   };
 
-  /// Neighbours along z have consecutive keys. Far apart cells may share one: that costs time, nothing else.
-  static std::uint64_t key(const Cell& cell) {
-    constexpr std::uint64_t mask = (1 << 21) - 1, middle = 1 << 20;
-    const auto bits = [&](std::int64_t c) { return (static_cast<std::uint64_t>(c) + middle) & mask; };
-    return bits(cell[0]) << 42 | bits(cell[1]) << 21 | bits(cell[2]);
+  Ball ball_around(std::size_t first, std::size_t last) const {
+    const Vector centre = (points_[first] + points_[(first + last) / 2] + points_[last]) / 3;
+    double square = 0;
+    for (auto i = first; i <= last; ++i) square = std::max(square, (points_[i] - centre).squaredNorm());
+    return {centre, std::sqrt(square)};
   }
 
-  Cell cell_of(std::size_t segment) const {
-    const Vector middle = (points_[segment] + points_[segment + 1]) / 2 - points_[0];
-    const auto index = [&](double x) { return static_cast<std::int64_t>(std::floor(x / cell_size_)); };
-    return {index(middle.x()), index(middle.y()), index(middle.z())};
-  }
-
-  /// Looks up the three by three rows of cells around one; neighbours along the line mostly share them.
-  void find_rows(const Cell& cell) {
-    if (rows_cell_ == cell) return;
-    rows_cell_ = cell;
-    for (std::int64_t i = 0; i < 9; ++i) {
-      const auto first = key({cell[0] + i % 3 - 1, cell[1] + i / 3 - 1, cell[2] - 1});
-      const auto start = std::lower_bound(entries_.begin(), entries_.end(), Entry{first, 0});
-      auto end = start;
-      while (end != entries_.end() && end->key <= first + 2) ++end;
-      rows_[i] = {start, end};
+  template <class Visit>
+  void descend(std::size_t level, std::size_t index, const Query& query, const Visit& visit) const {
+    const auto &ball = levels_[level][index], &other = levels_[0][query.leaf];
+    // A little more than enough: rounding must not hide what is near.
+    const double reach = (ball.radius + other.radius + query.distance) * (1 + 1e-12);
+    if ((ball.centre - other.centre).squaredNorm() > reach * reach) return;
+    if (level == 0) {
+      visit(index * branching, std::min((index + 1) * branching, points_.size() - 1));
+      return;
+    }
+    const auto first = index * branching, last = std::min(first + branching, levels_[level - 1].size());
+    for (auto child = last; child-- > first;) {
+      if (is_before(level - 1, child, query.leaf)) descend(level - 1, child, query, visit);
     }
   }
 
+  /// Does a ball hold anything up to a leaf?
+  static bool is_before(std::size_t level, std::size_t index, std::size_t leaf) {
+    for (; level > 0; --level) index *= branching;
+    return index <= leaf;
+  }
+
   const std::vector<Vector>& points_;
-  double cell_size_;
-  std::vector<Entry> entries_;
-  std::optional<Cell> rows_cell_;
-  std::array<std::pair<std::vector<Entry>::const_iterator, std::vector<Entry>::const_iterator>, 9> rows_;
+  std::vector<std::vector<Ball>> levels_;
 };
 
 }  // namespace
@@ -76,26 +80,39 @@ class SegmentGrid {
 SegmentRun longest_self_free_run(const std::vector<Vector>& points, double distance, double arc_gap) {
   const auto count = points.size() - 1;
   std::vector<double> arc{0};
-  double longest = 0;
   for (std::size_t i = 0; i < count; ++i) {
-    const double length = (points[i + 1] - points[i]).norm();
-    longest = std::max(longest, length);
-    arc.push_back(arc.back() + length);
+    arc.push_back(arc.back() + (points[i + 1] - points[i]).norm());
   }
   if (arc.back() <= arc_gap) return {0, count};
 
-  SegmentGrid grid(points, distance + longest);
+  const auto are_near = [&](std::size_t i, std::size_t j) {
+    const double reach = distance + (arc[i + 1] - arc[i]) + (arc[j + 1] - arc[j]);
+    if ((points[i] - points[j]).squaredNorm() > reach * reach) return false;
+    return segment_distance(points[i], points[i + 1], points[j], points[j + 1]) < distance;
+  };
+  const BallTree tree(points);
   SegmentRun best{0, 0};
   // Two pointers: the run that ends with segment `last` cannot begin before `first`.
   std::size_t first = 0;
-  for (std::size_t last = 0; last < count; ++last) {
-    if (arc[last] - arc[first + 1] > arc_gap) {
-      grid.visit_around(last, [&](std::size_t i) {
-        if (i < first || i >= last || arc[last] - arc[i + 1] <= arc_gap) return;
-        if (segment_distance(points[i], points[i + 1], points[last], points[last + 1]) < distance) first = i + 1;
-      });
+  std::array<std::size_t, BallTree::branching> least_first;
+  for (std::size_t leaf = 0; leaf * BallTree::branching < count; ++leaf) {
+    const auto begin = leaf * BallTree::branching, end = std::min(begin + BallTree::branching, count);
+    least_first.fill(first);
+    tree.visit_near(leaf, distance, [&](std::size_t from, std::size_t to) {
+      if (arc[end - 1] - arc[from + 1] <= arc_gap) return;
+      for (auto last = begin; last < end; ++last) {
+        for (auto i = std::min(to, last); i-- > std::max(from, least_first[last - begin]);) {
+          if (arc[last] - arc[i + 1] <= arc_gap) continue;
+          if (!are_near(i, last)) continue;
+          least_first[last - begin] = i + 1;
+          break;
+        }
+      }
+    });
+    for (auto last = begin; last < end; ++last) {
+      first = std::max(first, least_first[last - begin]);
+      if (arc[last + 1] - arc[first] > arc[best.last] - arc[best.first]) best = {first, last + 1};
     }
-    if (arc[last + 1] - arc[first] > arc[best.last] - arc[best.first]) best = {first, last + 1};
   }
   return best;
 }

@@ -3,7 +3,8 @@
 
 #include <cmath>
 #include <cstdint>
-#include <vector>
+
+#include "detail/large_array.hpp"
 
 namespace pectinate::detail {
 
@@ -24,17 +25,17 @@ class VisitedChords {
   bool revisit(std::int32_t triangle, double chord, double width, double distance) {
     auto& last = visits_[triangle];
     const bool is_near = last.round == round_ && std::abs(last.chord - chord) * width < distance;
-    last = {chord, round_};
+    last = {static_cast<float>(chord), round_};
     return is_near;
   }
 
  private:
   struct Visit {
-    double chord;
+    float chord;
     std::uint32_t round;
   };
   std::uint32_t round_ = 0;
-  std::vector<Visit> visits_;
+  LargeArray<Visit> visits_;
 };
 
 }  // namespace pectinate::detail

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <new>
+#include <utility>
+#include <vector>
+
+namespace pectinate::detail {
+
+/// Asks the system to back whole large pages of this memory by such; a hint.
+void prefer_large_pages(void* memory, std::size_t size);
+
+/// Memory of large arrays that are walked over at random: in large pages, where the system has them, it costs fewer
+/// page faults and less translation of addresses.
+template <class T>
+class LargePageAllocator {
+ public:
+  using value_type = T;  // NOLINT(readability-identifier-naming): the standard's name
+
+  LargePageAllocator() = default;
+  template <class U>
+  explicit LargePageAllocator(const LargePageAllocator<U>&) {}
+
+  T* allocate(std::size_t count) {
+    const auto size = count * sizeof(T);
+    void* memory = ::operator new(size, alignment(size));
+    if (size >= large_page) prefer_large_pages(memory, size);
+    return static_cast<T*>(memory);
+  }
+  void deallocate(T* memory, std::size_t count) { ::operator delete(memory, alignment(count * sizeof(T))); }
+
+  /// Elements without a value are left as the memory is: to write it twice costs as much as to compute them.
+  template <class U>
+  void construct(U* place) {
+    ::new (static_cast<void*>(place)) U;
+  }
+  template <class U, class... Arguments>
+  void construct(U* place, Arguments&&... arguments) {
+    ::new (static_cast<void*>(place)) U(std::forward<Arguments>(arguments)...);
+  }
+
+  bool operator==(const LargePageAllocator&) const = default;
+
+ private:
+  static constexpr std::size_t large_page = std::size_t{1} << 21, cache_line = 64;
+
+  static std::align_val_t alignment(std::size_t size) {
+    return std::align_val_t{size >= large_page ? large_page : cache_line};
+  }
+};
+
+/// Elements of built-in types have no value until they are given one.
+template <class T>
+using LargeArray = std::vector<T, LargePageAllocator<T>>;
+
+}  // namespace pectinate::detail

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "detail/crossings.hpp"
+#include "detail/large_array.hpp"
+#include "detail/vec.hpp"
+#include "pectinate/orientation_field.hpp"
+#include "pectinate/surface_mesh.hpp"
+
+namespace pectinate::detail {
+
+/// A surface and its field as streamlines see them. Its triangles lie in memory along a space-filling curve: what is
+/// near on the surface is near in the cache. Everything here is indexed by these triangles, not by the mesh's.
+struct Sheet {
+  std::vector<std::int32_t> mesh_triangles;         ///< per triangle here
+  std::vector<std::int32_t> ranks;                  ///< per mesh triangle: the triangle here
+  LargeArray<Vector> vertices;                      ///< in an order of their own
+  LargeArray<std::array<std::int32_t, 3>> corners;  ///< vertices: low, middle, high
+  LargeArray<TriangleCrossings> crossings;
+
+  std::int32_t triangle_count() const { return static_cast<std::int32_t>(crossings.size()); }
+  bool has_direction(std::int32_t triangle) const { return crossings[triangle].split > 0; }
+  const Vector& low(std::int32_t triangle) const { return vertices[corners[triangle][0]]; }
+  const Vector& middle(std::int32_t triangle) const { return vertices[corners[triangle][1]]; }
+  const Vector& high(std::int32_t triangle) const { return vertices[corners[triangle][2]]; }
+
+  /// Where a chord crosses a side.
+  Vector point(std::int32_t triangle, Role role, double chord) const {
+    const Vector& from = role == middle_high ? middle(triangle) : low(triangle);
+    const Vector& to = role == low_middle ? middle(triangle) : high(triangle);
+    return from + side_position(crossings[triangle], role, chord) * (to - from);
+  }
+};
+
+/// Sides at which the field turns by more than `abrupt_turn_angle` stop streamlines.
+Sheet make_sheet(const SurfaceMesh& mesh, const OrientationField& field, double abrupt_turn_angle);
+
+}  // namespace pectinate::detail
