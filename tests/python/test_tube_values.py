@@ -263,3 +263,18 @@ def test_a_page_has_values_on_tubes_categories_and_contours(placement: Placement
     assert {values["steps"]["rows"] for values in lines["values"]} == {lines["positions"]["rows"]}
     with pytest.raises(InvalidOption, match="shown_tube_values"):
         placement.page(tube_values=replace(tags, label="tag"), shown_tube_values="none")
+
+
+@drawn
+def test_vertices_that_no_tube_uses_may_be_anything() -> None:
+    vertices, triangles = line_tubes([[[0, 0, 1], [4, 3, 1]]], 0.4)
+    values = vertices[:, 0]
+    padded = np.concatenate([[[np.nan] * 3], vertices[:9], [[1e9] * 3], vertices[9:]])
+    moved = np.where(triangles < 9, triangles + 1, triangles + 2)
+    numbers = np.concatenate([[np.nan], values[:9], [0.0], values[9:]])
+    options = {"view": ABOVE, "size": SIZE}
+    plain, same = (
+        render_view(meshes.grid(), layers=[Layer(tubes, (0, 0, 0), SurfaceValues(v, value_range=(0, 4)))], **options)
+        for tubes, v in (((vertices, triangles), values), ((padded, moved), numbers))
+    )
+    assert np.array_equal(plain, same)
