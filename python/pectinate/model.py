@@ -16,7 +16,8 @@ from pectinate import _core
 from pectinate._core import OrientationField, SurfaceMesh
 from pectinate.errors import InvalidField, InvalidMesh, InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
-from pectinate.figure.parts import Lines, Part, Values, named_values
+from pectinate.figure.parts import Part, Values, named_values
+from pectinate.figure.polylines import Lines
 from pectinate.figure.sheet import draw_sheet
 from pectinate.io.gltf import make_trimesh
 from pectinate.io.vtk_library import surface_dataset

@@ -19,8 +19,9 @@ from pectinate import _core
 from pectinate.choices import member
 from pectinate.errors import InvalidOption
 from pectinate.figure.files import check_picture_path, save_picture
-from pectinate.figure.parts import Lines, Part, TubeMesh, Values, named_values, values_at
+from pectinate.figure.parts import Part, Values, named_values
 from pectinate.figure.plots import draw_lengths
+from pectinate.figure.polylines import Lines, TubeMesh, values_at
 from pectinate.figure.shading import Style
 from pectinate.figure.shape import Layer
 from pectinate.figure.sheet import draw_sheet

@@ -18,7 +18,7 @@ from pectinate.errors import InvalidOption
 from pectinate.figure import Layer, Lines, Part, Style, SurfaceValues, View, draw_sheet, line_tubes, render_view
 from pectinate.figure.frame import Frame, extent, fitting_scale, middle
 from pectinate.figure.lines import located_tubes
-from pectinate.figure.parts import values_at
+from pectinate.figure.polylines import values_at
 from pectinate.figure.values import CategoryScale, make_scale
 from pectinate.viewer import Page
 

@@ -25,7 +25,7 @@ from pectinate import datasets, place_streamlines
 from pectinate.cli import ExitCode, main
 from pectinate.errors import InvalidFile, InvalidMesh, InvalidOption, MissingDependency
 from pectinate.figure import SurfaceValues
-from pectinate.figure.parts import resampled
+from pectinate.figure.polylines import resampled
 from pectinate.viewer import Lines, Marker, Page, Part
 from pectinate.viewer.encoding import NO_VALUE, coherent_order, first_use_codes, quantized_points, quantized_values
 from pectinate.viewer.scene import describe_scene

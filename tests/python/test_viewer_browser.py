@@ -16,7 +16,7 @@ import pectinate
 from browser import Browser, start_browser
 from pectinate import datasets, place_streamlines
 from pectinate.figure import Layer, SurfaceValues, render_view, standard_view
-from pectinate.figure.parts import values_at
+from pectinate.figure.polylines import values_at
 from pectinate.viewer import Marker, Page, Part
 
 SIZE = (360, 300)

@@ -4,10 +4,11 @@ from pectinate.figure.cells import Cell, figure_sheet
 from pectinate.figure.contours import Contour, contour_lines
 from pectinate.figure.disk import draw_disk
 from pectinate.figure.lines import line_tubes
-from pectinate.figure.parts import Lines, Marker, Part
+from pectinate.figure.parts import Marker, Part
 from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import render_view
 from pectinate.figure.plots import draw_lengths, draw_spacing
+from pectinate.figure.polylines import Lines
 from pectinate.figure.shading import Style
 from pectinate.figure.shape import Layer
 from pectinate.figure.sheet import draw_sheet

@@ -18,9 +18,10 @@ from pectinate.figure.frame import Frame, fitting_scale, middle
 from pectinate.figure.layout import Layout
 from pectinate.figure.markers import RADIUS, draw_markers
 from pectinate.figure.offscreen import open_canvas
-from pectinate.figure.parts import Marker, Part, nearest_parts, normal_at, three_numbers, values_at
+from pectinate.figure.parts import Marker, Part, nearest_parts, normal_at, three_numbers
 from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import Drawn, draw_frame
+from pectinate.figure.polylines import values_at
 from pectinate.figure.scale_bar import draw_bar
 from pectinate.figure.shading import Style
 from pectinate.figure.shape import Drawing, Layer, check_layers, check_surface

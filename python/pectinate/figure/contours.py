@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pectinate.errors import InvalidOption
-from pectinate.figure.parts import Lines, resampled
+from pectinate.figure.polylines import Lines, resampled
 from pectinate.figure.triangles import Triangles, check_shape
 from pectinate.figure.values import SurfaceValues
 

@@ -12,18 +12,10 @@ from numpy.typing import NDArray
 from pectinate.errors import InvalidOption
 from pectinate.figure.contours import contour_tubes
 from pectinate.figure.frame import MARGIN
-from pectinate.figure.parts import (
-    Lines,
-    Marker,
-    Part,
-    nearest_parts,
-    normal_at,
-    resampled,
-    used_vertices,
-    values_at,
-)
+from pectinate.figure.parts import Marker, Part, nearest_parts, normal_at, used_vertices
 from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import FOLD_SIZE
+from pectinate.figure.polylines import Lines, resampled, values_at
 from pectinate.figure.shading import Style, light_settings
 from pectinate.figure.triangles import Triangles
 from pectinate.figure.values import (
