@@ -1,8 +1,8 @@
 """Example: activation times on an atrium, drawn under its streamlines.
 
-`python benchmarks/activation.py surface.pts --start=X,Y,Z --out sheet.png` draws any surface with fibres. The wave runs
-from one place along the shortest ways, faster along the fibres than across them; no cells, no wall, so this is an
-illustration and not a simulation.
+`python benchmarks/activation.py surface.pts --start=X,Y,Z --out sheet.png` draws any surface with fibres. The wave
+runs from one place along the shortest ways, faster along the fibres than across them (on a flat grid up to 11 % late,
+1 % in the mean); no cells, no wall, so this is an illustration and not a simulation.
 """
 
 from __future__ import annotations

@@ -296,22 +296,29 @@ def test_view_shows_values_and_tracts(tmp_path: Path) -> None:
     np.save(values, vertices[:, 0])
     pectinate.TractSet([pectinate.Tract(np.array([[1.0, 1, 0], [5, 5, 0]]), "one")]).save(tracts)
     page = tmp_path / "page.html"
-    words = ["view", surface, "--values", values, "--tracts", tracts, "--out", page, "--quiet"]
+    words = ["view", surface, "--values", values, "--tracts", tracts, "--contours", 1.5, "--out", page, "--quiet"]
     assert main([str(word) for word in words]) == ExitCode.DONE
     html = page.read_text(encoding="utf-8")
     assert '"label":"activation"' in html
     assert '"tracts":{' in html
+    assert '"contours":{' in html
 
 
 def test_view_refuses_before_it_works(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     values = tmp_path / "v.npy"
     values.write_text("no array")
     vertices, triangles = meshes.grid()
+    tags, heights = tmp_path / "tags.npy", tmp_path / "heights.npy"
+    np.save(tags, np.arange(len(triangles)))
+    np.save(heights, vertices[:, 1])
     pectinate.save_surface(pectinate.load((vertices, triangles)), tmp_path / "a.ply")
     for words, code, text in (
         (["a.ply", "--out", "page.png"], ExitCode.USAGE, "page.png"),
         (["a.ply", "b.ply", "--values", str(values)], ExitCode.USAGE, "one MESH"),
         (["a.ply", "--values", "v.txt"], ExitCode.USAGE, "v.txt"),
+        (["a.ply", "--contours", "1"], ExitCode.USAGE, "--contours serves --values alone"),
+        ([str(tmp_path / "a.ply"), "--values", str(tags), "--contours", "1"], ExitCode.USAGE, "one value per vertex"),
+        ([str(tmp_path / "a.ply"), "--values", str(heights), "--contours", "-1"], ExitCode.USAGE, "-1"),
         (["a.ply", "--views", "front"], ExitCode.USAGE, "front"),
         ([str(tmp_path / "a.ply"), "--values", str(values)], ExitCode.REJECTED, "is no array"),
         ([str(tmp_path / "none.ply")], ExitCode.REJECTED, "none.ply"),

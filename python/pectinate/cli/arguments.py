@@ -85,6 +85,8 @@ def _add_view(subparsers: argparse._SubParsersAction[Parser]) -> None:
         metavar="FILE",
         help=".npy or .dat: a number per triangle or vertex, shown in colours; may be repeated",
     )
+    words = "lines every so many units of values per vertex, such as isochrones"
+    group.add_argument("--contours", type=float, metavar="STEP", help=words)
     group.add_argument("--tracts", type=Path, metavar="FILE", help="file of tracts, drawn as black lines")
     add_views(group)
     _add_tubes(group)

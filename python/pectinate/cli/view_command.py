@@ -13,7 +13,9 @@ import pectinate
 from pectinate.cli import report
 from pectinate.cli.files import check_folders, check_suffixes, check_views, given, load_surface, writing
 from pectinate.cli.progress import ProgressBar
+from pectinate.cli.shared_arguments import UsageError
 from pectinate.errors import InvalidFile, InvalidOption
+from pectinate.figure import SurfaceValues
 from pectinate.io import opencarp
 from pectinate.model import Model
 from pectinate.placement import DEFAULTS
@@ -51,6 +53,8 @@ def _check(arguments: argparse.Namespace) -> None:
         check_suffixes("--out", [arguments.out], frozenset(SUFFIXES))
         check_folders([arguments.out])
     check_suffixes("--values", arguments.values, _VALUE_SUFFIXES)
+    if arguments.contours is not None and not arguments.values:
+        raise UsageError("--contours serves --values alone, which is not given; add it or leave --contours out")
     if len(arguments.meshes) > 1 and (arguments.values or arguments.tracts is not None):
         raise InvalidOption("--values and --tracts belong to one surface: give one MESH")
     check_views(arguments)
@@ -58,7 +62,7 @@ def _check(arguments: argparse.Namespace) -> None:
 
 def _part(path: Path, arguments: argparse.Namespace) -> Part:
     model = load_surface(arguments, path)
-    values = {file.stem: _values(model, file) for file in arguments.values}
+    values = {file.stem: SurfaceValues(_values(model, file), contours=arguments.contours) for file in arguments.values}
     tracts = [] if arguments.tracts is None else pectinate.read_tracts(arguments.tracts).curves_on(model)
     options: dict[str, Any] = {"surface_values": values, "tracts": tracts}
     if model.field is None:
