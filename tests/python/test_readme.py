@@ -30,6 +30,7 @@ def test_the_examples_run_and_make_what_they_say(tmp_path: Path, monkeypatch: py
         *("right_atrium.pts", "right_atrium.elem", "right_atrium.lon"),
         *("atrium.vtp", "made.png"),
         *("atrium.html", "both.html", "lines.vtp"),
+        *("values.png", "values.html"),
     }
     assert np.load("streamlines.npz")["offsets"][-1] > 0
     assert Image.open("posterior.png").size == (640, 610)
