@@ -31,7 +31,7 @@ CLOSE = 15.0  # degrees
 FACING = 0.5  # cosine: turned away from the viewer by less than 60 degrees
 # Standard deviations in d_sep: a kernel is one d_sep across, a window two, two deviations to each side of the middle.
 INNER, WINDOW = 0.25, 0.5
-GRAIN = 0.2  # standard deviation of noise in the luminance of each pixel
+GRAIN = 0.1  # standard deviation of noise in the luminance of each pixel, which is 0 to 1
 VIEWS = (View("posterior", (0, -1, 0), (0, 0, 1)), View("anterior", (0, 1, 0), (0, 0, 1)))
 SURFACES = ("demo", "la_epi", "la_epi smoothed")
 Line = list[str]
@@ -79,16 +79,19 @@ class Reading:
 
     def cells(self) -> Line:
         """Median, share; the same of what faces the viewer."""
-        return [_median(self.errors), _percent(self.errors), _median(self.errors[self.facing]), _percent(self.errors[self.facing])]
+        return [
+            _median(self.errors),
+            _percent(self.errors),
+            _median(self.errors[self.facing]),
+            _percent(self.errors[self.facing]),
+        ]
 
 
 TITLES_OF_READING = ["median", "within 15", "facing: median", "within 15"]
 Draw = Callable[[Scene], NDArray[np.uint8]]
 
 
-def read_picture(
-    picture: NDArray[np.uint8], truth: ProjectedField, scales: Scales, grain: float = 0.0
-) -> Reading:
+def read_picture(picture: NDArray[np.uint8], truth: ProjectedField, scales: Scales, grain: float = 0.0) -> Reading:
     """Compare a picture with the truth; where it shows no orientation the error is 90 degrees."""
     brightness = luminance(picture)
     if grain:
@@ -190,9 +193,9 @@ def rivals(folder: Path | None) -> str:
                     file = f"{surface}-{name}-{scene.frame.view.name}.png".replace(" ", "_")
                     Image.fromarray(drawn[id(scene)]).save(folder / file)
             plain = read_all(again, scenes(surface))
-            grainy = read_all(again, scenes(surface), grain=GRAIN)
-            lines.append([surface, name, *plain.cells(), _percent(grainy.errors)])
-    return align(["surface", "picture", *TITLES_OF_READING, "with grain"], lines, left=2)
+            grainy = [_percent(read_all(again, scenes(surface), grain=grain).errors) for grain in (GRAIN, 2 * GRAIN)]
+            lines.append([surface, name, *plain.cells(), *grainy])
+    return align(["surface", "picture", *TITLES_OF_READING, f"grain {GRAIN}", f"{2 * GRAIN}"], lines, left=2)
 
 
 def closeness(_: Path | None) -> str:
@@ -233,17 +236,23 @@ def tapers(_: Path | None) -> str:
 def contrasts(_: Path | None) -> str:
     """Colours and light."""
     style = Style()
+    dark = (0.04, 0.04, 0.04)
     styles = {
         "default": style,
-        "grey tubes, 0.35": replace(style, tube_color=(0.35, 0.34, 0.34)),
-        "grey tubes, 0.6": replace(style, tube_color=(0.6, 0.59, 0.58)),
-        "black tubes": replace(style, tube_color=(0.0, 0.0, 0.0)),
+        "tubes 0.35": replace(style, tube_color=(0.35, 0.35, 0.35)),
+        "tubes 0.6": replace(style, tube_color=(0.6, 0.6, 0.6)),
+        "tubes 0.04": replace(style, tube_color=dark),
+        "tubes 0": replace(style, tube_color=(0.0, 0.0, 0.0)),
         "white tubes on dark": replace(style, tube_color=(0.95, 0.95, 0.95), surface_color=(0.25, 0.22, 0.2)),
-        "tubes without gloss": replace(style, tube_gloss=0.0),
-        "folds not darkened": replace(style, fold_darkness=0.0),
-        "edges not darkened": replace(style, edge_darkness=0.0),
-        "none of the three": replace(style, tube_gloss=0.0, fold_darkness=0.0, edge_darkness=0.0),
-        "edges darkened, 0.7": replace(style, edge_darkness=0.7),
+        "gloss 0": replace(style, tube_gloss=0.0),
+        "gloss 0.1": replace(style, tube_gloss=0.1),
+        "folds 0": replace(style, fold_darkness=0.0),
+        "folds 0.3": replace(style, fold_darkness=0.3),
+        "edges 0": replace(style, edge_darkness=0.0),
+        "edges 0.7": replace(style, edge_darkness=0.7),
+        "gloss, folds, edges 0": replace(style, tube_gloss=0.0, fold_darkness=0.0, edge_darkness=0.0),
+        "tubes 0.04, folds 0.3": replace(style, tube_color=dark, fold_darkness=0.3),
+        "tubes 0.04, folds 0.3, gloss 0.1": replace(style, tube_color=dark, fold_darkness=0.3, tube_gloss=0.1),
     }
     return _sweep("colours and light", [(name, zebra(style=some)) for name, some in styles.items()])
 
@@ -256,12 +265,12 @@ def separations(_: Path | None) -> str:
         some = [Scene.of(scene.model, scene.frame.view, size) for scene in scenes("demo")]
         pixels = SEPARATION / some[0].frame.mm_per_pixel
         lines.append([f"{width}", f"{pixels:.1f}", *_plain_and_grainy(zebra(), some)])
-    return align(["width", "d_sep, pixels", *TITLES_OF_READING, "with grain"], lines, left=0)
+    return align(["width", "d_sep, pixels", *TITLES_OF_READING, f"grain {GRAIN}"], lines, left=0)
 
 
 def _sweep(title: str, draws: Sequence[tuple[str, Draw]]) -> str:
     lines = [[name, *_plain_and_grainy(draw, scenes("demo"))] for name, draw in draws]
-    return align([title, *TITLES_OF_READING, "with grain"], lines, left=1)
+    return align([title, *TITLES_OF_READING, f"grain {GRAIN}"], lines, left=1)
 
 
 def _plain_and_grainy(draw: Draw, some: Sequence[Scene]) -> Line:

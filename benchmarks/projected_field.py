@@ -67,9 +67,7 @@ def project_field(
     return ProjectedField(seen, across[seen], facing[seen])
 
 
-def visible_triangles(
-    vertices: NDArray[np.float64], triangles: NDArray[np.int64], frame: Frame
-) -> NDArray[np.int64]:
+def visible_triangles(vertices: NDArray[np.float64], triangles: NDArray[np.int64], frame: Frame) -> NDArray[np.int64]:
     """Cast a ray through the middle of each pixel; the index (h, w) of the nearest triangle it meets, or -1."""
     width, height = frame.size
     pixels, depths = frame.pixels(vertices), -frame.seen(vertices)[:, 2]

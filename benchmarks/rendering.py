@@ -79,7 +79,15 @@ def table(scene: tuple[Triangles, Triangles], repeats: int, folder: Path | None)
     for name, numbers in medians.items():
         ratios = [f"{numbers[k] / medians[own][k]:.2f}x" for own in (default, plain) for k in (0, 1)]
         lines.append([name, *[f"{number:.2f}" for number in numbers], *ratios])
-    titles = ["picture", "CPU s", "wall s", "CPU / ours at 2", "wall / ours at 2", "CPU / ours at 1", "wall / ours at 1"]
+    titles = [
+        "picture",
+        "CPU s",
+        "wall s",
+        "CPU / ours at 2",
+        "wall / ours at 2",
+        "CPU / ours at 1",
+        "wall / ours at 1",
+    ]
     return align(titles, lines, left=1)
 
 

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 import pyvista
 from numpy.typing import NDArray
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import breadth_first_order, minimum_spanning_tree
 from scipy.spatial import cKDTree
 from vtkmodules.vtkRenderingLICOpenGL2 import vtkSurfaceLICMapper
 
@@ -62,7 +64,8 @@ def draw_line_integral_convolution(fibres: Fibres, frame: Frame, *, enhanced: bo
     """Draw VTK's line integral convolution on the surface, in black and white.
 
     Either as it comes, or with all its means to enhance contrast, longer lines, and its range stretched to black and
-    white afterwards. Vectors go to the vertices by the main axis of the tensor average.
+    white afterwards. Vectors go to the vertices by the main axis of the tensor average, with senses
+    that agree with their neighbours'.
     """
     surface = fibres.to_pyvista()
     surface["direction"] = _at_vertices(fibres)
@@ -137,4 +140,22 @@ def _at_vertices(fibres: Fibres) -> NDArray[np.float64]:
     for corner in range(3):
         np.add.at(tensors, fibres.triangles[:, corner], outer)
     _, axes = np.linalg.eigh(tensors)
-    return np.ascontiguousarray(axes[:, :, 2])
+    return _combed(axes[:, :, 2], fibres.triangles)
+
+
+def _combed(lines: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Choose senses so that neighbours agree wherever a tree of edges says so: opposite ones would cancel out."""
+    ends = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]]).T
+    # Along the edges where the field turns least first, so that disagreement ends up where it must turn.
+    turns = 1.001 - np.abs((lines[ends[0]] * lines[ends[1]]).sum(axis=1))
+    joined = csr_matrix((turns, ends), shape=(len(lines), len(lines)))
+    tree = minimum_spanning_tree(joined.maximum(joined.T))
+    combed = np.array(lines)
+    done = np.zeros(len(lines), dtype=bool)
+    while not done.all():
+        order, parents = breadth_first_order(tree, np.argmin(done), directed=False)
+        done[order] = True
+        for vertex in order[1:]:
+            if combed[vertex] @ combed[parents[vertex]] < 0:
+                combed[vertex] *= -1
+    return combed

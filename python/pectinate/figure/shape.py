@@ -17,7 +17,7 @@ from pectinate.figure.shading import (
     gloss,
     light,
     shaded,
-    triangle_normals,
+    turned_to_viewer,
     value_light,
     vertex_normals,
 )
@@ -171,7 +171,7 @@ def _surface_patches(surface: Surface, view: View, centre: NDArray[np.float64], 
     """A surface: outside and inside as patches of their own colours."""
     shape, rotation = surface.shape, view.rotation()
     vertices, normals = (shape.vertices - centre) @ rotation.T, shape.normals @ rotation.T
-    faces_viewer = triangle_normals(vertices, shape.triangles)[:, 2] >= 0
+    faces_viewer = turned_to_viewer(vertices, shape.triangles) >= 0
     facing = shape.triangles[faces_viewer]
     if surface.colors is None:
         outside = Patch(vertices, facing, shaded(surface.color, light(normals, style.edge_darkness)))
@@ -189,7 +189,7 @@ def _tube_patches(shape: Shape, color: Color, view: View, centre: NDArray[np.flo
     """The halves of the tubes that face the viewer; the others are hidden, because tubes are closed."""
     rotation = view.rotation()
     vertices, normals = (shape.vertices - centre) @ rotation.T, shape.normals @ rotation.T
-    facing = shape.triangles[triangle_normals(vertices, shape.triangles)[:, 2] > 0]
+    facing = shape.triangles[turned_to_viewer(vertices, shape.triangles) > 0]
     colors = shaded(color, light(normals, 0.0), style.tube_gloss * gloss(normals))
     return [Patch(vertices, facing, colors)] if len(facing) else []
 
