@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
 import numpy as np
@@ -78,8 +79,8 @@ def visible_triangles(vertices: NDArray[np.float64], triangles: NDArray[np.int64
     counts = boxes.prod(axis=1)
     nearest = np.full(height * width, np.inf)
     result = np.full(height * width, -1, dtype=np.int64)
-    groups = np.searchsorted(np.cumsum(counts), np.arange(0, counts.sum() + _AT_ONCE, _AT_ONCE))
-    for start, end in zip(groups[:-1], groups[1:], strict=True):
+    groups = np.searchsorted(np.cumsum(counts), np.arange(0, counts.sum() + _AT_ONCE, _AT_ONCE), side="right")
+    for start, end in itertools.pairwise(groups):
         some = np.arange(start, end)
         owner = np.repeat(some, counts[some])
         place = np.arange(len(owner)) - np.repeat(np.cumsum(counts[some]) - counts[some], counts[some])

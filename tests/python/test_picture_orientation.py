@@ -12,11 +12,10 @@ from conftest import REPOSITORY
 
 pytest.importorskip("scipy")
 sys.path.insert(0, str(REPOSITORY / "benchmarks"))
-from picture_orientation import LEAST_COHERENCE, Scales, luminance, read_orientation  # noqa: E402
-from projected_field import project_field, visible_triangles  # noqa: E402
-
-from pectinate.figure.frame import Frame  # noqa: E402
-from pectinate.figure.views import View  # noqa: E402
+from pectinate.figure.frame import Frame
+from pectinate.figure.views import View
+from picture_orientation import LEAST_COHERENCE, Scales, luminance, read_orientation
+from projected_field import project_field, visible_triangles
 
 PERIOD = 14.0
 SCALES = Scales(PERIOD / 4, PERIOD / 2)
@@ -104,4 +103,5 @@ def test_each_pixel_shows_the_nearest_triangle_and_its_projected_field() -> None
     shown = projected.shown
     np.testing.assert_allclose(projected.directions[shown], (field @ rotation.T)[seen[shown], :2])
     assert np.isnan(projected.angles[~shown]).all()
-    assert (0 < shown.mean()) & (shown.mean() < 1)
+    assert shown.any()
+    assert not shown.all()

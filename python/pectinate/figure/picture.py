@@ -22,7 +22,7 @@ from pectinate.figure.views import View, resolve_view
 FOLD_SIZE = 0.035
 """The folds that are darkened: those about this share of the surface's diagonal wide and half as deep."""
 
-TILE = 2560
+TILE = 2304
 """Pixels, with supersampling, across the tiles that a large picture is drawn in."""
 
 _STRIP = 64

@@ -207,7 +207,7 @@ def box_downsample(image: NDArray[np.generic], block: int) -> NDArray[np.float32
     total = np.zeros((height, width, *image.shape[2:]), dtype=np.float32)
     for row, column in np.ndindex(block, block):
         total += image[row : height * block : block, column : width * block : block]
-    return total / np.float32(block * block)
+    return np.asarray(total / np.float32(block * block))
 
 
 def _box_blur(image: NDArray[np.float32], radius: int) -> NDArray[np.float32]:
