@@ -223,36 +223,33 @@ def glyph_sizes(_: Path | None) -> str:
 
 def radii(_: Path | None) -> str:
     """Tube radius over d_sep."""
-    values = (0.10, 0.15, 0.20, 0.225, 0.25, 0.275, 0.30, 0.35)
+    values = (0.10, 0.15, 0.20, 0.225, 0.25, 0.275, 0.35)
     return _sweep("radius / d_sep", [(f"{value:g}", zebra(radius=value)) for value in values])
 
 
 def tapers(_: Path | None) -> str:
     """Taper length over d_sep."""
-    values = (0.0, 0.25, 0.5, 1.0, 1.25, 2.0, 4.0)
+    values = (0.0, 0.5, 1.25, 2.0, 4.0)
     return _sweep("taper / d_sep", [(f"{value:g}", zebra(taper=value)) for value in values])
 
 
 def contrasts(_: Path | None) -> str:
     """Colours and light."""
     style = Style()
-    dark = (0.04, 0.04, 0.04)
     styles = {
         "default": style,
+        "tubes 0": replace(style, tube_color=(0.0, 0.0, 0.0)),
+        "tubes 0.1": replace(style, tube_color=(0.1, 0.1, 0.1)),
         "tubes 0.35": replace(style, tube_color=(0.35, 0.35, 0.35)),
         "tubes 0.6": replace(style, tube_color=(0.6, 0.6, 0.6)),
-        "tubes 0.04": replace(style, tube_color=dark),
-        "tubes 0": replace(style, tube_color=(0.0, 0.0, 0.0)),
         "white tubes on dark": replace(style, tube_color=(0.95, 0.95, 0.95), surface_color=(0.25, 0.22, 0.2)),
         "gloss 0": replace(style, tube_gloss=0.0),
-        "gloss 0.1": replace(style, tube_gloss=0.1),
         "folds 0": replace(style, fold_darkness=0.0),
-        "folds 0.3": replace(style, fold_darkness=0.3),
+        "folds 0.45": replace(style, fold_darkness=0.45),
         "edges 0": replace(style, edge_darkness=0.0),
         "edges 0.7": replace(style, edge_darkness=0.7),
         "gloss, folds, edges 0": replace(style, tube_gloss=0.0, fold_darkness=0.0, edge_darkness=0.0),
-        "tubes 0.04, folds 0.3": replace(style, tube_color=dark, fold_darkness=0.3),
-        "tubes 0.04, folds 0.3, gloss 0.1": replace(style, tube_color=dark, fold_darkness=0.3, tube_gloss=0.1),
+        "tubes 0.1, folds 0.45": replace(style, tube_color=(0.1, 0.1, 0.1), fold_darkness=0.45),
     }
     return _sweep("colours and light", [(name, zebra(style=some)) for name, some in styles.items()])
 

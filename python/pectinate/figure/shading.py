@@ -37,12 +37,12 @@ class Style:
 
     surface_color: Color = (0.93, 0.90, 0.86)
     inside_color: Color = (0.62, 0.55, 0.53)
-    tube_color: Color = (0.10, 0.09, 0.09)
+    tube_color: Color = (0.04, 0.04, 0.04)
     tract_color: Color = (0.0, 0.0, 0.0)
     no_value_color: Color = (0.72, 0.72, 0.72)
     background_color: Color = (1.0, 1.0, 1.0)
     tube_gloss: float = 0.2
-    fold_darkness: float = 0.45
+    fold_darkness: float = 0.3
     edge_darkness: float = 0.35
 
 
