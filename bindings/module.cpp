@@ -18,4 +18,5 @@ PYBIND11_MODULE(_core, module) {
   bind_tubes(module);
   bind_demo_atrium(module);
   bind_atria(module);
+  bind_landmark_warp(module);
 }

@@ -19,5 +19,6 @@ void bind_smoothing(pybind11::module_& module);
 void bind_comparison(pybind11::module_& module);
 void bind_demo_atrium(pybind11::module_& module);
 void bind_atria(pybind11::module_& module);
+void bind_landmark_warp(pybind11::module_& module);
 
 }  // namespace pectinate::bindings

@@ -12,7 +12,9 @@ from importlib.metadata import version
 
 from pectinate import datasets, errors, viewer
 from pectinate._core import OrientationField, SurfaceMesh, Tubes
+from pectinate.atlas_field import CarriedTracts, atlas, carry_tracts
 from pectinate.comparison import Comparison, add_noise, compare
+from pectinate.correspondence import Correspondence, correspond
 from pectinate.figure import Cell, Marker, Part, PatientAxes, figure_sheet
 from pectinate.interpolated_field import InterpolatedField
 from pectinate.interpolation import FieldEditor, interpolate
@@ -28,8 +30,10 @@ from pectinate.tracts import BoundaryCondition, SurfaceIdentity, Tract, TractSet
 
 __all__ = [
     "BoundaryCondition",
+    "CarriedTracts",
     "Cell",
     "Comparison",
+    "Correspondence",
     "DiskMap",
     "FieldEditor",
     "InterpolatedField",
@@ -48,7 +52,10 @@ __all__ = [
     "TractSet",
     "Tubes",
     "add_noise",
+    "atlas",
+    "carry_tracts",
     "compare",
+    "correspond",
     "datasets",
     "errors",
     "figure_sheet",

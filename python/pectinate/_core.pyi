@@ -174,6 +174,12 @@ class Transfer:
     source_triangles: _Ints
     distances: _Floats
 
+class LandmarkWarp:
+    landmarks: _Floats
+    weights: _Floats
+    linear: list[list[float]]
+    offset: list[float]
+
 class PlacementMethod(Enum):
     random = 0
     neighborhood = 1
@@ -281,6 +287,8 @@ def make_constraints(
     maximum_distance: float | None = None,
     conflict_angle: float = ...,
 ) -> Constraints: ...
+def make_landmark_warp(landmarks: _Numbers, counterparts: _Numbers, *, stiffness: float = ...) -> LandmarkWarp: ...
+def warp_points(warp: LandmarkWarp, points: _Numbers) -> _Floats: ...
 def has_parameterization() -> bool: ...
 def parameterize(mesh: SurfaceMesh, *, outer_loop: int | None = ...) -> Parameterization: ...
 def make_reference_frame(

@@ -384,8 +384,7 @@ TEST_CASE("projection: errors name the tract and the point") {
   for (const double far : {0.2, 1e3, 1e12, 1e200, 1e308}) {
     CHECK(message(named({{1, 1, 0}, {2, 1, -far}})).starts_with("tract 1 \"Bachmann\": point 1 is "));
   }
-  CHECK(message(named({{1, 1, 0}, {2, 1, -0.5}})).find("point 1 is 0.5 away from the surface") !=
-        std::string::npos);
+  CHECK(message(named({{1, 1, 0}, {2, 1, -0.5}})).find("point 1 is 0.5 away from the surface") != std::string::npos);
   CHECK(message(named({{1, 1, 0}, {2, 1, 0}, {2, 1, 10}})).find("points 1 and 2 lie on different components") !=
         std::string::npos);
   // Across a cut at an edge with three triangles there is no surface.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -32,6 +33,11 @@ WRONG: tuple[Any, ...] = (
     lambda: None,
 )
 WRONG_OR_NUMBER = (*WRONG, 3, 2.5)
+
+
+@cache
+def coarse_atrium() -> pectinate.Model:
+    return pectinate.datasets.atrial_surface("left_atrium", edge_length=2)
 
 
 def set_condition(**changed: Any) -> None:
@@ -85,6 +91,19 @@ CALLS: list[tuple[Callable[..., Any], str, tuple[Any, ...]]] = [
     (lambda loop_pairs: pectinate.compare(MODEL, MODEL, how="disks", loop_pairs=loop_pairs), "loop_pairs", ()),
     (lambda standard_deviation: pectinate.add_noise(MODEL, standard_deviation), "standard_deviation", (3, 2.5)),
     (lambda random_seed: pectinate.add_noise(MODEL, 0.1, random_seed=random_seed), "random_seed", (3,)),
+    (lambda tracts: pectinate.carry_tracts(tracts, MODEL, MODEL), "tracts", ()),
+    (lambda loops: pectinate.atlas(MODEL, loops), "loops", ()),
+    *(
+        (lambda _name=name, **given: pectinate.atlas(MODEL, {"mitral valve": [0, 0, 0]}, **given), name, ())
+        for name in ("chamber", "layer")
+    ),
+    (
+        lambda maximum_distance: pectinate.carry_tracts(
+            TractSet(), coarse_atrium(), coarse_atrium(), maximum_distance=maximum_distance
+        ),
+        "maximum_distance",
+        (3, 2.5),
+    ),
     (lambda outer_loop: pectinate.parameterize(flat(), outer_loop=outer_loop), "outer_loop", ()),
     (lambda inner_loop: pectinate.parameterize(flat(), inner_loop=inner_loop), "inner_loop", ()),
     (lambda inner_point: pectinate.parameterize(flat(), inner_point=inner_point), "inner_point", ()),
@@ -123,6 +142,9 @@ def test_wrong_types_are_refused_by_name(call, name, right):
         lambda surface: pectinate.compare(MODEL, surface),
         lambda surface: pectinate.add_noise(surface, 0.1),
         pectinate.parameterize,
+        lambda surface: pectinate.correspond(surface, MODEL),
+        lambda surface: pectinate.carry_tracts(TractSet(), MODEL, surface),
+        lambda surface: pectinate.atlas(surface, {"mitral valve": [0, 0, 0]}),
     ],
 )
 def test_what_is_no_surface_is_refused(call):

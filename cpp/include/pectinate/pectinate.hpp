@@ -8,6 +8,7 @@
 #include "pectinate/errors.hpp"
 #include "pectinate/field_topology.hpp"
 #include "pectinate/interpolation.hpp"
+#include "pectinate/landmark_warp.hpp"
 #include "pectinate/named_loop.hpp"
 #include "pectinate/occupancy.hpp"
 #include "pectinate/orientation_field.hpp"

@@ -1,4 +1,4 @@
-"""The command line: `pectinate place`, `view`, `interpolate`, `smooth`, `compare`, `parameterize`, `info`, `demo`."""
+"""The command line: `pectinate place`, `view`, `interpolate`, `atlas`, `smooth`, `compare` and others."""
 
 from __future__ import annotations
 

@@ -27,8 +27,9 @@ _LOOP = "index, name or X,Y,Z near it"
 
 
 def add_field_commands(subparsers: argparse._SubParsersAction[Parser]) -> None:
-    """Add `interpolate`, `parameterize`, `smooth` and `compare`."""
+    """Add `interpolate`, `atlas`, `parameterize`, `smooth` and `compare`."""
     _add_interpolate(subparsers)
+    _add_atlas(subparsers)
     _add_parameterize(subparsers)
     _add_smooth(subparsers)
     _add_compare(subparsers)
@@ -48,6 +49,31 @@ def _add_interpolate(subparsers: argparse._SubParsersAction[Parser]) -> None:
         "--conflict-angle", type=degrees(90), metavar="DEGREES", help="tracts that differ by more are in conflict"
     )
     _add_outputs(parser)
+    add_common(parser)
+
+
+def _add_atlas(subparsers: argparse._SubParsersAction[Parser]) -> None:
+    text = "give a bare atrium the fibres of the built-in one"
+    parser = subparsers.add_parser("atlas", help=text, description=_sentence(text), epilog=EXIT_CODES)
+    parser.set_defaults(run=field_commands.atlas)
+    add_surface(parser)
+    parser.add_argument(
+        "--loops",
+        type=Path,
+        required=True,
+        metavar="FILE",
+        help='names of openings, each with a point near it, mm: {"mitral valve": [x, y, z], ...}, .json',
+    )
+    group = parser.add_argument_group("atlas")
+    group.add_argument("--chamber", metavar="CHAMBER", help="left_atrium or right_atrium (default: as the names tell)")
+    group.add_argument("--layer", metavar="LAYER", help="epicardium (default) or endocardium")
+    group.add_argument("--maximum-distance", type=float, metavar="MM", help="tracts farther off are left out")
+    group.add_argument("--method", metavar="METHOD", help=f"{METHODS[0]} (the default), or the paper's {METHODS[1]}")
+    group.add_argument(
+        "--conflict-angle", type=degrees(90), metavar="DEGREES", help="tracts that differ by more are in conflict"
+    )
+    _add_outputs(parser)
+    parser.add_argument("--tracts-out", type=Path, metavar="FILE", help="the tracts as carried, .json")
     add_common(parser)
 
 

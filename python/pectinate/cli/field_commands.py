@@ -30,6 +30,7 @@ _SUFFIXES = frozenset({*opencarp.SUFFIXES, *vtk.SUFFIXES})
 # The keywords of the library by argument.
 _FRAME = {"outer": "outer_loop", "inner": "inner_loop", "inner_point": "inner_point"}
 _INTERPOLATION = {name: name for name in ("method", "maximum_distance", "conflict_angle")} | _FRAME
+_ATLAS = {name: name for name in ("chamber", "layer", "maximum_distance", "method", "conflict_angle")}
 _SMOOTHING = {name: name for name in ("length", "barriers", "outlier_angle", "fill_missing")}
 _COMPARISON = {"how": "how", "maximum_distance": "maximum_distance", "pairs": "loop_pairs"}
 
@@ -46,6 +47,26 @@ def interpolate(arguments: argparse.Namespace) -> None:
     found = result.report()
     rows = field_report.interpolation_rows(found)
     _print(arguments, rows, {"surface": result.model.summary(), "interpolation": found, "seconds": seconds}, written)
+
+
+def atlas(arguments: argparse.Namespace) -> None:
+    """Carry the tracts of a built-in atrium to the surface of a file; save and draw them and their field."""
+    _check_outputs(arguments)
+    tract_files = [] if arguments.tracts_out is None else [arguments.tracts_out]
+    check_suffixes("--tracts-out", tract_files, {".json"})
+    check_folders(tract_files)
+    model = load_surface(arguments, field=None)
+    started = time.perf_counter()
+    result = pectinate.atlas(model, arguments.loops, **given(arguments, _ATLAS))
+    seconds = time.perf_counter() - started
+    written = _save(result, arguments)
+    with writing():
+        for path in tract_files:
+            result.tracts.save(path)
+    _draw_streamlines(result, arguments)
+    found = result.report()
+    summary = {"surface": result.model.summary(), "interpolation": found, "seconds": seconds}
+    _print(arguments, field_report.interpolation_rows(found), summary, [*written, *tract_files])
 
 
 def parameterize(arguments: argparse.Namespace) -> None:
