@@ -22,7 +22,7 @@ from pectinate.figure import Lines, Style, SurfaceValues, View, draw_sheet, rend
 from pectinate.figure.frame import Frame
 from pectinate.figure.markers import place_discs
 from pectinate.figure.offscreen import Canvas, Stage, open_canvas
-from pectinate.figure.picture import draw_frame
+from pectinate.figure.picture import TILE, draw_frame
 from pectinate.figure.shape import Drawing, check_drawing
 
 drawn = pytest.mark.usefixtures("opengl")
@@ -91,7 +91,7 @@ def test_no_more_than_a_tile_is_drawn_at_once(monkeypatch: pytest.MonkeyPatch) -
 
     monkeypatch.setattr(Canvas, "draw", counted)
     assert render_view(sphere(), size=(700, 500), supersampling=6).shape == (500, 700, 3)
-    assert max(max(size) for size in sizes) <= 2048
+    assert max(max(size) for size in sizes) <= TILE <= 4096
     # The tiles, and the depth map, which is coarse.
     assert sum(width * height for width, height in sizes) <= 4200 * 3000 + 700 * 500
     sizes.clear()

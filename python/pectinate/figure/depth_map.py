@@ -66,7 +66,7 @@ class DepthMap:
 
 
 def draw_depth_map(
-    canvas: Canvas, stage: Stage, frame: Frame, points: NDArray[np.float64], fold_size: float
+    canvas: Canvas, stage: Stage, frame: Frame, window: tuple[NDArray[np.int64], NDArray[np.int64]], fold_size: float
 ) -> DepthMap:
     """Draw the depth of a frame where there is something to see.
 
@@ -76,12 +76,12 @@ def draw_depth_map(
     ----------
     canvas, stage, frame
         What to draw on, what, and what of it is seen.
-    points : (n, 3) float64
-        Every vertex, in the coordinates of the frame's view.
+    window : two (2,) int64
+        The pixels where there may be something, of `Frame.window`.
     fold_size : float
         Width in mm of the folds that shall be darkened: the size of the surroundings.
     """
-    first, last = _seen_pixels(frame, points)
+    first, last = window
     radius = 0.5 * fold_size / frame.mm_per_pixel
     extent = last - first
     cell = max(
@@ -96,12 +96,3 @@ def draw_depth_map(
     _, samples = canvas.draw(stage, size, frame.mm_per_pixel * cell, (float(middle[0]), float(middle[1])))
     blur = min(max(1, round(radius / cell)), int(cells.max()))
     return DepthMap(samples, blurred_depth(samples, blur), cell, (int(first[0]), int(first[1])))
-
-
-def _seen_pixels(frame: Frame, points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """First column and row of the picture where there may be something, and those behind the last; at least one."""
-    pixels = frame.pixels(points)
-    size = np.array(frame.size)
-    first = np.clip(np.floor(pixels.min(axis=0)), 0, size - 1).astype(np.int64)
-    last = np.clip(np.ceil(pixels.max(axis=0)), first + 1, size).astype(np.int64)
-    return first, last

@@ -40,18 +40,32 @@ class Frame:
         across = self.seen(points)[:, :2] * (1, -1) / self.mm_per_pixel
         return np.asarray(across + 0.5 * np.array(self.size))
 
+    def window(self, points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """First column and row, (2,), of the pixels that show all points, and those behind the last; at least one."""
+        corners = self.pixels(np.array(seen_box(points, self.view)) @ self.view.rotation())
+        size = np.array(self.size)
+        first = np.clip(np.floor(corners.min(axis=0)), 0, size - 1).astype(np.int64)
+        last = np.clip(np.ceil(corners.max(axis=0)), first + 1, size).astype(np.int64)
+        return first, last
+
+
+def seen_box(points: NDArray[np.float64], view: View) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Least and greatest coordinates, (3,) float64 each, of points seen along a view: right, up, towards the viewer."""
+    seen = view.rotation() @ points.T
+    return seen.min(axis=1), seen.max(axis=1)
+
 
 def extent(points: NDArray[np.float64], view: View) -> tuple[float, float]:
     """Width and height in mm of points seen along a view."""
-    width, height, _ = np.ptp(points @ view.rotation().T, axis=0).tolist()
+    low, high = seen_box(points, view)
+    width, height, _ = (high - low).tolist()
     return width, height
 
 
 def middle(points: NDArray[np.float64], view: View) -> NDArray[np.float64]:
     """Middle, (3,) float64 in the coordinates of the points, of their box seen along a view."""
-    rotation = view.rotation()
-    seen = points @ rotation.T
-    return np.asarray(0.5 * (seen.min(axis=0) + seen.max(axis=0)) @ rotation)
+    low, high = seen_box(points, view)
+    return np.asarray(0.5 * (low + high) @ view.rotation())
 
 
 def fitting_scale(extent_mm: tuple[float, float], size: tuple[int, int]) -> float:

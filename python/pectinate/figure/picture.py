@@ -23,8 +23,11 @@ from pectinate.figure.views import View, resolve_view
 FOLD_SIZE = 0.035
 """The folds that are darkened: those about this share of the surface's diagonal wide and half as deep."""
 
-TILE = 2048
+TILE = 2304
 """Pixels, with supersampling, across the tiles that a large picture is drawn in."""
+
+_STRIP = 64
+"""Rows of a tile that are finished together: what is made of them on the way stays small."""
 
 _LARGEST_SUPERSAMPLING = 8
 
@@ -132,20 +135,29 @@ def draw_frame(  # noqa: PLR0913
         raise InvalidOption(f"supersampling {supersampling}: give a whole number from 1 to {_LARGEST_SUPERSAMPLING}")
     stage = canvas.load(patches(drawing, frame.view, frame.centre, style))
     fold_size = FOLD_SIZE * drawing.diagonal
-    depth_map = draw_depth_map(canvas, stage, frame, drawing.points, fold_size)
+    window = frame.window(drawing.points)
+    depth_map = draw_depth_map(canvas, stage, frame, window, fold_size)
     darkness = style.fold_darkness * (VALUE_SHADE if drawing.shows_values else 1.0)
-    width, height = frame.size
-    picture = np.empty((height, width, 4 if transparent else 3), dtype=np.uint8)
+
+    def finish(premultiplied: NDArray[np.float32]) -> NDArray[np.uint8]:
+        return straight_alpha(premultiplied) if transparent else on_background(premultiplied, style)
+
+    picture = np.empty((*frame.size[::-1], 4 if transparent else 3), dtype=np.uint8)
+    picture[:] = finish(np.zeros((1, 1, 4), dtype=np.float32))
     side = max(1, min(tile, canvas.largest_size) // supersampling)
-    for top, left in itertools.product(range(0, height, side), range(0, width, side)):
-        columns, rows = np.arange(left, min(left + side, width)), np.arange(top, min(top + side, height))
-        lit, depth = _draw_tile(canvas, stage, frame, (columns, rows), supersampling)
-        if darkness > 0 and fold_size > 0:
-            shadow = fold_shadow(depth, depth_map.surroundings_at(columns, rows), 0.5 * fold_size)
-            lit[:, :, :3] *= (1 - np.float32(darkness) * shadow)[:, :, None]
-        premultiplied = box_downsample(lit, supersampling)
-        finished = straight_alpha(premultiplied) if transparent else on_background(premultiplied, style)
-        picture[rows[0] : rows[-1] + 1, columns[0] : columns[-1] + 1] = finished
+    (left, top), (right, bottom) = window
+    for row, column in itertools.product(range(top, bottom, side), range(left, right, side)):
+        columns, rows = np.arange(column, min(column + side, right)), np.arange(row, min(row + side, bottom))
+        color, depth = _draw_tile(canvas, stage, frame, (columns, rows), supersampling)
+        for start in range(0, len(rows), _STRIP):
+            strip = rows[start : start + _STRIP]
+            samples = slice(start * supersampling, (start + len(strip)) * supersampling)
+            lit = color[samples].astype(np.float32)
+            if darkness > 0 and fold_size > 0:
+                shadow = fold_shadow(depth[samples], depth_map.surroundings_at(columns, strip), 0.5 * fold_size)
+                lit[:, :, :3] *= (1 - np.float32(darkness) * shadow)[:, :, None]
+            finished = finish(box_downsample(lit, supersampling) / np.float32(255))
+            picture[strip[0] : strip[-1] + 1, column : column + len(columns)] = finished
     return Drawn(picture, frame, stage.nearest, depth_map)
 
 
@@ -155,15 +167,14 @@ def _draw_tile(
     frame: Frame,
     pixels: tuple[NDArray[np.int64], NDArray[np.int64]],
     supersampling: int,
-) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Draw some columns and rows of a frame: premultiplied RGBA from 0 to 1, and depth, with supersampling."""
+) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+    """Draw some columns and rows of a frame: premultiplied RGBA and depth, with supersampling."""
     middle_x, middle_y = (
         (0.5 * (some[0] + some[-1] + 1) - 0.5 * whole) * frame.mm_per_pixel
         for some, whole in zip(pixels, frame.size, strict=True)
     )
     size = (len(pixels[0]) * supersampling, len(pixels[1]) * supersampling)
-    color, depth = canvas.draw(stage, size, frame.mm_per_pixel / supersampling, (middle_x, -middle_y))
-    return color.astype(np.float32) / np.float32(255), depth
+    return canvas.draw(stage, size, frame.mm_per_pixel / supersampling, (middle_x, -middle_y))
 
 
 def on_background(premultiplied: NDArray[np.float32], style: Style) -> NDArray[np.uint8]:

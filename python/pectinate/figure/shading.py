@@ -39,13 +39,13 @@ class Style:
 
     surface_color: Color = (0.93, 0.90, 0.86)
     inside_color: Color = (0.62, 0.55, 0.53)
-    tube_color: Color = (0.10, 0.09, 0.09)
+    tube_color: Color = (0.04, 0.04, 0.04)
     tract_color: Color = (0.0, 0.0, 0.0)
     no_value_color: Color = (0.72, 0.72, 0.72)
     contour_color: Color = (1.0, 1.0, 1.0)
     background_color: Color = (1.0, 1.0, 1.0)
     tube_gloss: float = 0.2
-    fold_darkness: float = 0.45
+    fold_darkness: float = 0.3
     edge_darkness: float = 0.35
 
 
@@ -92,6 +92,13 @@ def triangle_normals(vertices: NDArray[np.float64], triangles: NDArray[np.int64]
     """Normals of triangles, (T, 3) float64, of length twice the area."""
     a, b, c = (vertices[triangles[:, corner]] for corner in range(3))
     return np.cross(b - a, c - a)
+
+
+def turned_to_viewer(vertices: NDArray[np.float64], triangles: NDArray[np.int64]) -> NDArray[np.float64]:
+    """The third coordinate of `triangle_normals`, (T,) float64: above 0 for triangles that show their outside."""
+    right, up = vertices[:, 0], vertices[:, 1]
+    a, b, c = triangles.T
+    return np.asarray((right[b] - right[a]) * (up[c] - up[a]) - (up[b] - up[a]) * (right[c] - right[a]))
 
 
 def unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -200,8 +207,10 @@ def fold_shadow(depth: NDArray[np.float32], surroundings: NDArray[np.float32], r
 def box_downsample(image: NDArray[np.generic], block: int) -> NDArray[np.float32]:
     """Mean over blocks of pixels of an image (block * h, block * w) or (block * h, block * w, c)."""
     height, width = image.shape[0] // block, image.shape[1] // block
-    blocks = image.reshape(height, block, width, block, *image.shape[2:])
-    return np.asarray(blocks.mean(axis=(1, 3), dtype=np.float32))
+    total = np.zeros((height, width, *image.shape[2:]), dtype=np.float32)
+    for row, column in np.ndindex(block, block):
+        total += image[row : height * block : block, column : width * block : block]
+    return np.asarray(total / np.float32(block * block))
 
 
 def _box_blur(image: NDArray[np.float32], radius: int) -> NDArray[np.float32]:

@@ -18,7 +18,7 @@ from pectinate.figure.shading import (
     gloss,
     light,
     shaded,
-    triangle_normals,
+    turned_to_viewer,
     value_light,
 )
 from pectinate.figure.triangles import Shape, Triangles, check_shape
@@ -169,7 +169,7 @@ def _surface_patches(surface: Surface, view: View, centre: NDArray[np.float64], 
     """A surface: outside and inside as patches of their own colours."""
     shape, rotation = surface.shape, view.rotation()
     vertices, normals = (shape.vertices - centre) @ rotation.T, shape.normals @ rotation.T
-    faces_viewer = triangle_normals(vertices, shape.triangles)[:, 2] >= 0
+    faces_viewer = turned_to_viewer(vertices, shape.triangles) >= 0
     facing = shape.triangles[faces_viewer]
     if surface.colors is None:
         outside = Patch(vertices, facing, shaded(surface.color, light(normals, style.edge_darkness)))
@@ -187,7 +187,7 @@ def _tube_patches(tubes: Tubes, view: View, centre: NDArray[np.float64], style: 
     """The halves of the tubes that face the viewer; the others are hidden, because tubes are closed."""
     shape, rotation = tubes.shape, view.rotation()
     vertices, normals = (shape.vertices - centre) @ rotation.T, shape.normals @ rotation.T
-    facing = shape.triangles[triangle_normals(vertices, shape.triangles)[:, 2] > 0]
+    facing = shape.triangles[turned_to_viewer(vertices, shape.triangles) > 0]
     if tubes.colors is not None or tubes.calm:
         # No gloss, which would be another colour.
         colors = shaded(tubes.color if tubes.colors is None else tubes.colors.colors, value_light(normals, 0.0))
