@@ -6,6 +6,7 @@ import base64
 import io
 import json
 import shutil
+import socket
 import time
 from pathlib import Path
 from typing import Any
@@ -86,6 +87,10 @@ def start_browser(*more_arguments: str) -> Browser:
     driver = shutil.which("chromedriver")
     if browser is None or driver is None:
         pytest.skip("needs Chromium and its driver; on Debian: apt-get install chromium chromium-driver")
+    try:
+        socket.getaddrinfo("localhost", None)
+    except OSError:
+        pytest.skip("Selenium asks for the name localhost, which this system does not know; see /etc/hosts")
     options = webdriver.ChromeOptions()
     options.binary_location = browser
     for argument in (*_ARGUMENTS, *more_arguments):
