@@ -40,10 +40,6 @@ class AtrialFibres:
         """The tracts as curves on the surface, (n, 3) each, mm."""
         return [curve.points for curve in self.made.constraints.tracts]
 
-    def part(self, name: str, **options: Any) -> Part:
-        """Surface and streamlines; options are those of `Placement.part`."""
-        return self.placement.part(name, **options)
-
     def tract_part(self, name: str, **options: Any) -> Part:
         """Surface and tracts; options are those of `Model.part`."""
         return self.made.model.part(name, tracts=self.curves, tract_radius=_TRACT_RADIUS, **options)
@@ -74,7 +70,7 @@ def fibre_sheet(layers: AtrialLayers, path: str | os.PathLike[str] | None = None
         Of `pectinate.figure.figure_sheet`.
     """
     columns = {
-        layer: ([shown.part(name) for name, shown in chambers.items()], _markers(chambers))
+        layer: ([shown.placement.part(name) for name, shown in chambers.items()], _markers(chambers))
         for layer, chambers in layers.items()
     }
     cells = [[Cell(parts, view, markers=markers) for parts, markers in columns.values()] for view in _FIBRE_VIEWS]
@@ -96,7 +92,7 @@ def atria_page(layers: AtrialLayers) -> Page:
         for name, shown in chambers.items():
             title = f"{name.replace('_', ' ')}, {layer}"
             options = {"tracts": shown.curves, "tract_radius": _TRACT_RADIUS}
-            parts.append(shown.part(title, visible=layer == next(iter(layers)), **options))
+            parts.append(shown.placement.part(title, visible=layer == next(iter(layers)), **options))
     notes = [f"{row} {rule}" for row, rule in FIBRE_RULES.items()]
     style = Style(tract_color=_TRACT_COLOR)
     return Page(parts, markers=markers, title="Fibres of the atria", notes=notes, style=style)
