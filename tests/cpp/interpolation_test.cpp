@@ -354,4 +354,17 @@ TEST_CASE("lone triangles and components without constraints get a direction") {
   }
 }
 
+TEST_CASE("interpolated directions are unit, in their planes and signed as those of any field") {
+  const auto mesh = torus(24, 12).mesh();
+  Random random(5);
+  auto rows = random_rows(mesh, 12, random);
+  for (auto& row : rows) row.direction = detail::vec3(-3 * vector(row.direction));
+  const auto field = interpolate(mesh, rows).field;
+  const auto again = OrientationField::from_triangle_vectors(mesh, field.directions());
+  for (std::int32_t t = 0; t < count_of(mesh); ++t) {
+    CHECK((vector(field.directions()[t]) - vector(again.directions()[t])).norm() <= 1e-15);
+    CHECK(field.out_of_plane_angles()[t] == 0);
+  }
+}
+
 }  // namespace pectinate::test
