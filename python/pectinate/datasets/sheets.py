@@ -91,8 +91,8 @@ def atria_page(layers: AtrialLayers) -> Page:
         markers += _markers(chambers)
         for name, shown in chambers.items():
             title = f"{name.replace('_', ' ')}, {layer}"
-            options = {"tracts": shown.curves, "tract_radius": _TRACT_RADIUS}
-            parts.append(shown.placement.part(title, visible=layer == next(iter(layers)), **options))
+            first = layer == next(iter(layers))
+            parts.append(shown.placement.part(title, visible=first, tracts=shown.curves, tract_radius=_TRACT_RADIUS))
     notes = [f"{row} {rule}" for row, rule in FIBRE_RULES.items()]
     style = Style(tract_color=_TRACT_COLOR)
     return Page(parts, markers=markers, title="Fibres of the atria", notes=notes, style=style)
