@@ -62,16 +62,17 @@ OrientationField make_field(const SurfaceMesh& mesh, const NamedField& field) {
   return field_of(mesh, [&](const Vector& c, const Vector&) { return field.at(c, random.unit()); });
 }
 
-/// How far each streamline keeps from those placed before it, at the segment that is farthest; in d_sep.
-std::vector<double> greatest_clearances(const Placement& placement) {
+/// The room that each streamline had to start beside those placed before it, where it had most.
+std::vector<double> greatest_rooms(const Placement& placement) {
   const auto segments = segments_of(placement);
+  const Clearance clearance{placement.options.test_distance, placement.options.seed_clearance};
   std::vector<double> greatest(placement.lengths.size(), 0);
   for (const auto& segment : segments) {
     double least = std::numeric_limits<double>::infinity();
     for (const auto& other : segments) {
       if (other.line >= segment.line) break;
       if (segment.is_farther_than(other, 3 * other.separation_distance)) continue;
-      least = std::min(least, segment.distance(other) / other.separation_distance);
+      least = std::min(least, seed_room(segment, other, clearance));
     }
     greatest[segment.line] = std::max(greatest[segment.line], least);
   }
@@ -102,7 +103,7 @@ TEST_CASE("exact placement: whatever the field and the separation distance, it i
       const auto placement = checked(mesh, field, with(separation));
       check_segment_separation(placement, separation);
       check_self_separation(placement, separation);
-      check_complete(mesh, field, placement, separation, 10);
+      check_complete(mesh, field, placement, 10);
       CHECK(placement.statistics.coverage > 1 - 1e-6);
     }
   }
@@ -116,7 +117,7 @@ TEST_CASE("exact placement: the paper's methods are even and complete too") {
     for (const auto method : all_methods) {
       const auto placement = checked(mesh, field, with(0.6, method));
       check_segment_separation(placement, 0.6);
-      check_complete(mesh, field, placement, 0.6, 10);
+      check_complete(mesh, field, placement, 10);
     }
   }
 }
@@ -128,11 +129,11 @@ TEST_CASE("exact placement: with a clearance for seeds lines stay d_sep apart an
     const auto field = make_field(mesh, hard);
     for (const auto method : all_methods) {
       auto options = with(0.4, method);
-      options.seed_clearance = 1.11;
+      options.seed_clearance = 1.16;
       const auto placement = checked(mesh, field, options);
       check_segment_separation(placement, 0.4);
-      check_complete(mesh, field, placement, 1.11 * 0.4, 10);
-      for (const double clearance : greatest_clearances(placement)) CHECK(clearance >= 1.11);
+      check_complete(mesh, field, placement, 10);
+      for (const double room : greatest_rooms(placement)) CHECK(room >= 1);
       if (method == longest) check_self_separation(placement, 0.4);
     }
   }
@@ -143,7 +144,7 @@ TEST_CASE("exact placement: a clearance for seeds gives longer and fewer lines")
   const auto field = smooth_field(mesh);
   auto options = with(0.3);
   const auto strict = place_streamlines(mesh, field, options).statistics;
-  options.seed_clearance = 1.11;
+  options.seed_clearance = 1.16;
   const auto wider = place_streamlines(mesh, field, options).statistics;
   CHECK(wider.mean_length > strict.mean_length);
   CHECK(wider.streamline_count < strict.streamline_count);
@@ -160,8 +161,8 @@ TEST_CASE("exact placement: with a test distance lines run on until they are tha
       options.test_distance = 0.8;
       const auto placement = checked(mesh, field, options);
       check_segment_separation(placement, 0.8 * 0.4);
-      check_complete(mesh, field, placement, 0.4, 10);
-      for (const double clearance : greatest_clearances(placement)) CHECK(clearance >= 1);
+      check_complete(mesh, field, placement, 10);
+      for (const double room : greatest_rooms(placement)) CHECK(room >= 1);
     }
   }
 }
@@ -176,7 +177,7 @@ TEST_CASE("exact placement: no line is shorter than asked") {
         CAPTURE(minimum);
         auto options = with(0.4, method);
         options.minimum_length = minimum;
-        options.seed_clearance = minimum > 1 ? 1 : 1.11;
+        options.seed_clearance = minimum > 1 ? 1 : 1.16;
         const auto placement = place_streamlines(mesh, field, options);
         CHECK(placement.end == PlacementEnd::complete);
         for (const double length : placement.lengths) CHECK(length >= minimum * (1 - 1e-6));

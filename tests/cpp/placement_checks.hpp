@@ -11,6 +11,7 @@
 #include "detail/segment_distance.hpp"
 #include "detail/sheet.hpp"
 #include "lines.hpp"
+#include "pectinate/occupancy.hpp"
 #include "pectinate/placement.hpp"
 
 /// What is true of every placement.
@@ -35,12 +36,27 @@ struct Piece {
 
   double length() const { return (end - start).norm(); }
   double distance(const Piece& other) const { return detail::segment_distance(start, end, other.start, other.end); }
+  /// Of the end that is farther away: no point of this piece is farther.
+  double greatest_distance(const Piece& other) const {
+    return std::max(detail::distance_to_segment(start, other.start, other.end),
+                    detail::distance_to_segment(end, other.start, other.end));
+  }
   /// At a glance; false does not say that it is not.
   bool is_farther_than(const Piece& other, double distance) const {
     const detail::Vector between = start + end - other.start - other.end;
     return between.norm() / 2 - (length() + other.length()) / 2 > distance;
   }
 };
+
+/// How much room a chord has beside a segment, in separation distances: for a streamline to go on, 1 is enough.
+inline double room(const Piece& chord, const Piece& segment, double stop_clearance) {
+  return chord.distance(segment) / (stop_clearance * segment.separation_distance);
+}
+/// For one to start, as well, some point of it must keep the greater distance.
+inline double seed_room(const Piece& chord, const Piece& segment, const Clearance& clearance) {
+  return std::min(room(chord, segment, clearance.stop),
+                  chord.greatest_distance(segment) / (clearance.seed * segment.separation_distance));
+}
 
 inline std::vector<Piece> segments_of(const Placement& placement) {
   const auto& separations = placement.options.separation_distances;
@@ -171,18 +187,20 @@ inline void check_self_separation(const Placement& placement, double separation)
   }
 }
 
-/// With exact occupancy: no chord is left that keeps d_sep from all streamlines.
+/// With exact occupancy: no chord is left at which a streamline could start.
 inline void check_complete(const SurfaceMesh& mesh, const OrientationField& field, const Placement& placement,
-                           double separation, int chords_per_triangle = 20) {
+                           int chords_per_triangle = 20) {
   const auto segments = segments_of(placement);
   const auto sheet = detail::make_sheet(mesh, field, 1);
+  const Clearance clearance{placement.options.test_distance, placement.options.seed_clearance};
   int free = 0;
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t) {
     if (!field.has_direction(t)) continue;
     for (int i = 0; i < chords_per_triangle; ++i) {
       const auto chord = chord_segment(sheet, t, (i + 0.5) / chords_per_triangle);
       free += std::none_of(segments.begin(), segments.end(), [&](const auto& other) {
-        return !chord.is_farther_than(other, 1.01 * separation) && chord.distance(other) < separation * (1 + 1e-5);
+        return !chord.is_farther_than(other, 1.01 * clearance.seed * other.separation_distance) &&
+               seed_room(chord, other, clearance) < 1 + 1e-5;
       });
     }
   }

@@ -60,7 +60,7 @@ void check_even(const SurfaceMesh& mesh, const OrientationField& field, const Pl
     check_filled(mesh, field, placement);
   } else {
     check_segment_separation(placement, separation);
-    check_complete(mesh, field, placement, separation);
+    check_complete(mesh, field, placement);
   }
   if (placement.options.method == longest) check_self_separation(placement, separation);
 }
@@ -178,7 +178,7 @@ TEST_CASE("placement: every kind of surface is filled") {
       for (const double separation : {0.05, 0.2, 50.0}) {
         const auto field = smooth_field(mesh);
         const auto placement = checked(mesh, field, with(separation, way, 3));
-        if (way.occupancy == exact) check_complete(mesh, field, placement, separation, 5);
+        if (way.occupancy == exact) check_complete(mesh, field, placement, 5);
         if (way.occupancy == edge_mask && mesh.triangle_count() < 200) check_filled(mesh, field, placement);
         std::vector<bool> reached(mesh.components().size(), false);
         for (const auto t : placement.segment_triangles) reached[mesh.triangle_components()[t]] = true;

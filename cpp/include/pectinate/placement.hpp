@@ -42,8 +42,8 @@ struct PlacementOptions {
   OccupancyModel occupancy = OccupancyModel::exact;
   int seed_count = 32;                ///< n_seeds of the paper's methods, candidates a step, in [1, 10^6]
   double seed_distance_factor = 1.3;  ///< c_seed, >= 1, of method `distance`
-  /// Streamlines start only where this many d_sep are free, >= 1: above 1 (1.11 is good) fewer and longer ones, still
-  /// d_sep apart, leave small gaps. Exact occupancy only.
+  /// Streamlines are placed only through triangles where they are somewhere this many d_sep from all others, in [1, 2]:
+  /// above 1 (1.16 is good) fewer and longer ones, still d_sep apart, leave small gaps. Exact occupancy only.
   double seed_clearance = 1;
   /// Streamlines run on until they are this many d_sep from others, in (0, 1]: below 1 they grow longer, but only this
   /// far apart (d_test of Jobard and Lefer 1997). Exact occupancy only.

@@ -285,7 +285,7 @@ void ChordOccupancy::mark(std::int32_t triangle, const Polyline& line, std::size
   } else {
     mark_exactly(triangle, line, first, marking);
   }
-  if (&sets == &unseeded()) changed_.push_back(triangle);
+  changed_.push_back(triangle);
 }
 
 void ChordOccupancy::mark_exactly(std::int32_t triangle, const Polyline& line, std::size_t first,
@@ -311,9 +311,16 @@ void ChordOccupancy::mark_exactly(std::int32_t triangle, const Polyline& line, s
     if (!reach) return false;
     const Interval within{std::max(0.0, reach->low), std::min(1.0, reach->high)};
     if (within.low > within.high || sets.contains(triangle, within)) return false;
-    if (const auto chords = frame.shadow(capsule, frame.look(capsule))) {
+    const auto view = frame.look(capsule);
+    if (&sets == &unseeded_) {
+      for (const auto& chords : frame.core(capsule, view)) {
+        if (chords) sets.add(triangle, *chords);
+      }
+    } else if (const auto chords = frame.shadow(capsule, view)) {
       const double margin = guard * *separations / frame.width();
-      sets.add(triangle, {chords->low - margin, chords->high + margin});
+      const Interval taken{chords->low - margin, chords->high + margin};
+      sets.add(triangle, taken);
+      if (has_seed_sets_) unseeded_.add(triangle, taken);
     }
     return false;
   };

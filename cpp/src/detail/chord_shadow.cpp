@@ -103,4 +103,19 @@ std::optional<Interval> ChordFrame::shadow(const Capsule& capsule, const View& v
   return hull;
 }
 
+std::array<std::optional<Interval>, 2> ChordFrame::core(const Capsule& capsule, const View& view) const {
+  const auto& [low, middle, high] = view;
+  // A chord lies in a convex set if both its ends do: one on low-high, the other on one of the other sides.
+  const auto one_end = part_inside(low, high, capsule);
+  if (!one_end) return {};
+  const auto both_ends = [&](const std::optional<Interval>& other_end, double from, double to) {
+    if (!other_end) return std::optional<Interval>{};
+    const Interval chords{std::max(one_end->low, from + other_end->low * (to - from)),
+                          std::min(one_end->high, from + other_end->high * (to - from))};
+    return chords.low <= chords.high ? std::optional(chords) : std::nullopt;
+  };
+  return {both_ends(part_inside(low, middle, capsule), 0, split_),
+          both_ends(part_inside(middle, high, capsule), split_, 1)};
+}
+
 }  // namespace pectinate::detail

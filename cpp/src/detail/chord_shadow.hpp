@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -54,6 +55,10 @@ class ChordFrame {
   /// The chords that enter a capsule: one interval, because capsule and triangle are convex. In closed form; none if
   /// the capsule misses the triangle.
   std::optional<Interval> shadow(const Capsule& capsule, const View& view) const;
+
+  /// The chords that lie in a capsule with all their length, below and above the middle corner: where that is inside,
+  /// the two are one interval; where it sticks out, there may be a gap between them.
+  std::array<std::optional<Interval>, 2> core(const Capsule& capsule, const View& view) const;
 
   double width() const { return width_; }
 

@@ -18,7 +18,8 @@ constexpr double hugging_bonus = 1.05;
 /// Seeds of hugging lines lie this far outside the band that they hug, in separation distances.
 constexpr double hugging_gap = 1e-6;
 /// Rings of triangles beside a trajectory of the pool that need no other. The fewer lines there will be, the more it
-/// pays to choose them well: beyond this many edges a separation distance, the pool is denser.
+/// pays to choose them well: beyond this many edges a separation distance the pool is denser, and where streamlines
+/// need more room to start than to go on, no triangle is left out.
 constexpr int usual_rings = 2, rings_of_dense_pool = 1;
 constexpr double sparse_separation = 6;
 /// Room for stored chords per triangle, seldom all used.
@@ -123,35 +124,49 @@ class LongestFirst {
   /// Trajectories so close that the longest streamlines are never far from one: each triangle is crossed by one, or a
   /// few triangles away from one. False if it was stopped.
   bool fill_pool(const std::function<bool()>& go_on) {
-    double edge = 0;
-    for (const double length : mesh_.edge_lengths()) edge += length;
-    edge /= static_cast<double>(mesh_.edge_lengths().size());
     std::vector<bool> served(crossings_.size(), false);
-    for (const auto t : sheet_.ranks) {  // in the mesh's order: the sheet's depends on the axes
-      if (served[t] || occupancy_.stopped().is_full(t)) continue;
-      if (!go_on()) return false;
-      const auto stretch = add_trajectory(t, 0.5, false, 1).stretch;
-      const int rings = separation(t) > sparse_separation * edge ? rings_of_dense_pool : usual_rings;
-      serve(stretch, rings, served);
+    std::vector<std::int32_t> seeds;  // the last one is the next
+    const double sparse = sparse_separation * mean_edge_length();
+    for (const auto first : sheet_.ranks) {  // in the mesh's order: the sheet's depends on the axes
+      for (seeds.push_back(first); !seeds.empty();) {
+        const auto t = seeds.back();
+        seeds.pop_back();
+        if (served[t] || occupancy_.stopped().is_full(t)) continue;
+        if (!go_on()) return false;
+        const auto stretch = add_trajectory(t, 0.5, false, 1).stretch;
+        if (occupancy_.has_seed_sets()) {
+          const auto beside = serve(stretch, 0, served);  // on from there: where the last one was, memory is at hand
+          seeds.insert(seeds.end(), beside.begin(), beside.end());
+        } else {
+          serve(stretch, separation(t) > sparse ? rings_of_dense_pool : usual_rings, served);
+        }
+      }
     }
     return true;
   }
 
-  /// Marks the triangles of a stretch and those up to `rings` triangles away.
-  void serve(const Stretch& stretch, int rings, std::vector<bool>& served) const {
+  double mean_edge_length() const {
+    double sum = 0;
+    for (const double length : mesh_.edge_lengths()) sum += length;
+    return sum / static_cast<double>(mesh_.edge_lengths().size());
+  }
+
+  /// Marks the triangles of a stretch and those up to `rings` triangles away; returns those beside them.
+  std::vector<std::int32_t> serve(const Stretch& stretch, int rings, std::vector<bool>& served) const {
     std::vector<std::int32_t> front, next;
     for (auto i = stretch.first; i < stretch.last; ++i) front.push_back(chords_[i].triangle());
     for (const auto t : front) served[t] = true;
-    for (int ring = 0; ring < rings; ++ring, front.swap(next)) {
+    for (int ring = 0; ring <= rings; ++ring, front.swap(next)) {
       next.clear();
       for (const auto t : front) {
         for (const auto other : crossings_[t].neighbours) {
           if (other < 0 || served[other]) continue;
-          served[other] = true;
+          if (ring < rings) served[other] = true;
           next.push_back(other);
         }
       }
     }
+    return front;
   }
 
   /// Candidates that lie just outside the band of the streamline placed last.
