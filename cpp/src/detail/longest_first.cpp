@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <optional>
-#include <queue>
+#include <utility>
+#include <vector>
 
 #include "detail/self_free_run.hpp"
 #include "detail/sheet.hpp"
@@ -22,7 +23,7 @@ constexpr double hugging_gap = 1e-6;
 /// need more room to start than to go on, no triangle is left out.
 constexpr int usual_rings = 2, rings_of_dense_pool = 1;
 constexpr double sparse_separation = 6;
-/// Room for stored chords per triangle, seldom all used.
+/// Room for stored chords per triangle, seldom all used: when it is, those that no candidate needs are dropped.
 constexpr std::size_t most_usual_chords = 8;
 /// Narrower gaps between occupied chords hold no streamline.
 constexpr double least_gap = 4 * least_position;
@@ -39,10 +40,11 @@ class LongestFirst {
         minimum_length_(minimum_length),
         occupancy_(occupancy),
         place_(place),
+        most_chords_(most_usual_chords * crossings_.size()),
         hugged_(crossings_.size(), 0) {}
 
   bool run(const std::function<bool()>& go_on) {
-    chords_.reserve(most_usual_chords * crossings_.size());
+    chords_.reserve(most_chords_);
     if (!fill_pool(go_on) || !empty_heap(go_on)) return false;
     // Where all gaps together gave no streamline, they never will.
     for (std::int64_t before = -1; before != placed_count_ && push_gaps(go_on);) {
@@ -102,7 +104,7 @@ class LongestFirst {
     trajectory.ends[1] = walk(start, low_high, mind_others, chords_);
     trajectory.stretch.last = std::ssize(chords_);
     trajectories_.push_back(trajectory);
-    push(trajectory.stretch, static_cast<std::int32_t>(trajectories_.size()) - 1);
+    push(trajectory.stretch, length(trajectory.stretch), static_cast<std::int32_t>(trajectories_.size()) - 1);
     return trajectories_.back();
   }
 
@@ -114,11 +116,46 @@ class LongestFirst {
     return sum;
   }
 
-  void push(const Stretch& stretch, std::int32_t trajectory) { push(stretch, length(stretch), trajectory); }
-  void push(const Stretch& stretch, double key, std::int32_t trajectory) {
-    if (stretch.first < stretch.last && key >= minimum_length_) {
-      heap_.push({key * trajectories_[trajectory].bonus, stretch, trajectory});
+  /// Puts a stretch of known length into the heap.
+  void push(const Stretch& stretch, double length, std::int32_t trajectory, bool is_self_free = false) {
+    if (stretch.first < stretch.last && length >= minimum_length_) {
+      heap_.push_back({length * trajectories_[trajectory].bonus, stretch, trajectory, is_self_free});
+      std::push_heap(heap_.begin(), heap_.end());
     }
+  }
+
+  Piece pop() {
+    std::pop_heap(heap_.begin(), heap_.end());
+    const auto piece = heap_.back();
+    heap_.pop_back();
+    return piece;
+  }
+
+  /// Keeps of all trajectories only what pieces in the heap hold, and the chords at which they were cut off.
+  void drop_dead_chords() {
+    std::sort(heap_.begin(), heap_.end(),
+              [](const Piece& a, const Piece& b) { return a.stretch.first < b.stretch.first; });
+    std::size_t live = 0;
+    for (const auto& piece : heap_) live += static_cast<std::size_t>(piece.stretch.last - piece.stretch.first) + 2;
+    most_chords_ = std::max(most_chords_, 2 * live);
+    Chords chords;
+    chords.reserve(most_chords_);
+    std::vector<Trajectory> trajectories;
+    trajectories.reserve(heap_.size());
+    for (auto& [key, stretch, trajectory, is_self_free] : heap_) {
+      auto whole = trajectories_[trajectory];
+      const auto first = std::max(stretch.first - 1, whole.stretch.first);
+      const auto last = std::min(stretch.last + 1, whole.stretch.last);
+      const auto shift = std::ssize(chords) - first;
+      chords.insert(chords.end(), chords_.begin() + first, chords_.begin() + last);
+      whole.stretch = {first + shift, last + shift};
+      stretch = {stretch.first + shift, stretch.last + shift};
+      trajectory = static_cast<std::int32_t>(trajectories.size());
+      trajectories.push_back(whole);
+    }
+    chords_ = std::move(chords);
+    trajectories_ = std::move(trajectories);
+    std::make_heap(heap_.begin(), heap_.end());
   }
 
   /// Trajectories so close that the longest streamlines are never far from one: each triangle is crossed by one, or a
@@ -171,6 +208,7 @@ class LongestFirst {
 
   /// Candidates that lie just outside the band of the streamline placed last.
   void push_hugging() {
+    if (chords_.size() > most_chords_) drop_dead_chords();
     ++round_;
     for (const auto t : occupancy_.changed()) {
       if (hugged_[t] == round_ || occupancy_.unseeded().is_full(t)) continue;
@@ -211,15 +249,14 @@ class LongestFirst {
   bool empty_heap(const std::function<bool()>& go_on) {
     while (!heap_.empty()) {
       if (!go_on()) return false;
-      const auto piece = heap_.top();
-      heap_.pop();
-      if (!heap_.empty()) prefetch(heap_.top().stretch);
+      const auto piece = pop();
+      if (!heap_.empty()) prefetch(heap_.front().stretch);
       if (const auto best = longest_free(piece)) {
         const auto& [stretch, length] = *best;
         if (is_still_first(length, piece.trajectory)) {
-          place_best(stretch, piece.trajectory);
+          place_best(stretch, piece);
         } else {
-          push(stretch, length, piece.trajectory);
+          push(stretch, length, piece.trajectory, piece.is_self_free);
         }
       }
     }
@@ -235,7 +272,7 @@ class LongestFirst {
   }
 
   bool is_still_first(double now, std::int32_t trajectory) const {
-    return now >= minimum_length_ && (heap_.empty() || now * trajectories_[trajectory].bonus >= heap_.top().key);
+    return now >= minimum_length_ && (heap_.empty() || now * trajectories_[trajectory].bonus >= heap_.front().key);
   }
 
   struct FreeStretch {
@@ -261,9 +298,9 @@ class LongestFirst {
       i = run.last;
       if (!can_start) continue;
       if (best && run_length <= best->length) {
-        push(run, run_length, piece.trajectory);
+        push(run, run_length, piece.trajectory, piece.is_self_free);
       } else {
-        if (best) push(best->stretch, best->length, piece.trajectory);
+        if (best) push(best->stretch, best->length, piece.trajectory, piece.is_self_free);
         best = {run, run_length};
       }
     }
@@ -277,23 +314,28 @@ class LongestFirst {
     return occupancy_.unseeded().contains(chord.triangle(), chord.coordinate);
   }
 
-  /// Places a stretch, or, where it comes back to itself, the longest part of it that does not.
-  void place_best(const Stretch& stretch, std::int32_t trajectory) {
+  /// Places a stretch of a piece, or, where it comes back to itself, the longest part of it that does not.
+  void place_best(const Stretch& stretch, const Piece& piece) {
     make_polyline(stretch);
-    const double distance = separation(chords_[stretch.first].triangle());
-    const auto run = longest_self_free_run(polyline_.points, distance, 2 * distance);
-    const Stretch part{stretch.first + static_cast<std::int64_t>(run.first),
-                       stretch.first + static_cast<std::int64_t>(run.last)};
+    auto part = stretch;
+    if (!piece.is_self_free) {
+      const double distance = separation(chords_[stretch.first].triangle());
+      const auto run = longest_self_free_run(polyline_.points, distance, 2 * distance);
+      part = {stretch.first + static_cast<std::int64_t>(run.first),
+              stretch.first + static_cast<std::int64_t>(run.last)};
+    }
     if (part.last - part.first < stretch.last - stretch.first) {
-      push({stretch.first, part.first}, trajectory);
-      push({part.last, stretch.last}, trajectory);
-      if (!is_still_first(length(part), trajectory)) {
-        push(part, trajectory);
+      const Stretch before{stretch.first, part.first}, behind{part.last, stretch.last};
+      push(before, length(before), piece.trajectory);
+      push(behind, length(behind), piece.trajectory);
+      const double part_length = length(part);
+      if (!is_still_first(part_length, piece.trajectory)) {
+        push(part, part_length, piece.trajectory, separation_ > 0);  // where it varies, a part's may be another
         return;
       }
       make_polyline(part);
     }
-    const auto line = make_line(part, trajectory);  // while what stops it is not yet in its own neighbourhood
+    const auto line = make_line(part, piece.trajectory);  // while what stops it is not yet in its own neighbourhood
     occupancy_.add(polyline_);
     place_(line);
     ++placed_count_;
@@ -366,7 +408,8 @@ class LongestFirst {
 
   Chords chords_;  // of all trajectories, one after the other
   std::vector<Trajectory> trajectories_;
-  std::priority_queue<Piece> heap_;
+  std::vector<Piece> heap_;  // the first is the longest
+  std::size_t most_chords_;  // before dead ones are dropped
   std::int64_t placed_count_ = 0;
 
   VisitedChords visited_;

@@ -38,6 +38,7 @@ struct Piece {
   double key;
   Stretch stretch;
   std::int32_t trajectory;
+  bool is_self_free;  ///< known to keep criterion 5
 
   bool operator<(const Piece& other) const {
     return key != other.key ? key < other.key : stretch.first > other.stretch.first;
