@@ -14,19 +14,25 @@ DATA_FILE = Path(__file__).with_name("scenarios.toml")
 
 @dataclass(frozen=True)
 class SurfaceSource:
-    """The demo atrium with an `edge_length` in mm, or a `file` below the folder of measured data."""
+    """The demo atrium with an `edge_length` in mm, a `file` below the folder of measured data, or a `shape`.
+
+    All of it is made `scale` times as large, edges too.
+    """
 
     edge_length: float | None = None
     file: str | None = None
+    shape: str | None = None
+    scale: float = 1.0
 
     def __post_init__(self) -> None:
-        if (self.edge_length is None) == (self.file is None):
-            raise ValueError("a surface is given by either edge_length or file")
+        if sum(source is not None for source in (self.edge_length, self.file, self.shape)) != 1:
+            raise ValueError("a surface is given by one of edge_length, file and shape")
 
     def __str__(self) -> str:
-        if self.file is not None:
-            return Path(self.file).stem
-        return f"demo atrium, {self.edge_length:g} mm edges"
+        name = (
+            self.shape or f"demo atrium, {self.edge_length:g} mm edges" if self.file is None else Path(self.file).stem
+        )
+        return name if self.scale == 1 else f"{name}, times {self.scale:g}"
 
 
 @dataclass(frozen=True)

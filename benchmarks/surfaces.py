@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 import pectinate
 from scenarios import SurfaceSource
+from shapes import make_shape
 
 REPOSITORY = Path(__file__).resolve().parents[1]
 
@@ -38,6 +39,12 @@ class Arrays:
     field: NDArray[np.float64]
 
     @property
+    def edge_length(self) -> float:
+        """Mean length of the triangles' sides, mm."""
+        sides = self.vertices[self.triangles] - self.vertices[np.roll(self.triangles, 1, axis=1)]
+        return float(np.linalg.norm(sides, axis=2).mean())
+
+    @property
     def area(self) -> float:
         """Surface area, mm^2."""
         a, b, c = (self.vertices[self.triangles[:, corner]] for corner in range(3))
@@ -62,6 +69,9 @@ def read_surface(source: SurfaceSource) -> Arrays:
     SurfaceMissing
         No such file, or no vector per triangle in it.
     """
+    if source.shape is not None:
+        vertices, triangles, field = make_shape(source.shape)
+        return Arrays(source.scale * vertices, triangles, field)
     if source.edge_length is not None:
         model = pectinate.datasets.demo_atrium(edge_length=source.edge_length)
     else:
@@ -69,7 +79,7 @@ def read_surface(source: SurfaceSource) -> Arrays:
     data = model.data
     if data.vectors is None or data.vector_location != "triangle":
         raise SurfaceMissing(f"{data.source} has no vector per triangle, which the engines are compared on")
-    return Arrays(data.vertices, data.triangles, data.vectors)
+    return Arrays(source.scale * data.vertices, data.triangles, data.vectors)
 
 
 def find_file(name: str) -> Path:
