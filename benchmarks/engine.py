@@ -29,7 +29,8 @@ DEFAULT = "longest"
 HYSTERESIS = "longest, seed_clearance=1.11"
 FLOOR_PROGRAM = REPOSITORY / "build" / "benchmarks" / "floor"
 
-EDGE_LENGTHS = (1.0, 0.5, 0.25, 0.126)  # of the demo atrium: 42 thousand to 2.6 million triangles
+# Edge length of the demo atrium, and refinements of it: 42 thousand to 2.7 million triangles.
+MESHES = ((1.0, 0), (0.5, 0), (0.25, 0), (0.25, 1))
 EDGES_PER_SEPARATION = (0.25, 0.5, 1, 1.6, 2.5, 4, 6, 10, 16, 30)
 PLACEMENT = ("placement",)
 BEFORE_PLACEMENT = ("mesh", "field")
@@ -121,8 +122,11 @@ def _floor(bench: Bench, arrays: Arrays, separation: float) -> dict[str, float]:
 def print_scaling(bench: Bench) -> None:
     """More triangles at a fixed d_sep/edge: finer ones on the same surface, and a surface that grows."""
     for edges in (1.6, 4):
-        finer = [(SurfaceSource(edge_length=edge), edges * edge) for edge in EDGE_LENGTHS]
-        larger = [(SurfaceSource(edge_length=edge, scale=1 / edge), edges) for edge in EDGE_LENGTHS]
+        finer, larger = [], []
+        for edge, refinements in MESHES:
+            finest = edge / 2**refinements
+            finer.append((SurfaceSource(edge_length=edge, refinements=refinements), edges * finest))
+            larger.append((SurfaceSource(edge_length=edge, refinements=refinements, scale=1 / finest), edges))
         _print_growth(f"Finer triangles on the same surface, d_sep = {edges:g} edges", finer, bench)
         _print_growth(f"A larger heart, edges of 1 mm, d_sep {edges:g} mm", larger, bench)
 

@@ -69,9 +69,15 @@ def read_surface(source: SurfaceSource) -> Arrays:
     SurfaceMissing
         No such file, or no vector per triangle in it.
     """
+    arrays = _read_original(source)
+    for _ in range(source.refinements):
+        arrays = _refined(arrays)
+    return Arrays(source.scale * arrays.vertices, arrays.triangles, arrays.field)
+
+
+def _read_original(source: SurfaceSource) -> Arrays:
     if source.shape is not None:
-        vertices, triangles, field = make_shape(source.shape)
-        return Arrays(source.scale * vertices, triangles, field)
+        return Arrays(*make_shape(source.shape))
     if source.edge_length is not None:
         model = pectinate.datasets.demo_atrium(edge_length=source.edge_length)
     else:
@@ -79,7 +85,22 @@ def read_surface(source: SurfaceSource) -> Arrays:
     data = model.data
     if data.vectors is None or data.vector_location != "triangle":
         raise SurfaceMissing(f"{data.source} has no vector per triangle, which the engines are compared on")
-    return Arrays(source.scale * data.vertices, data.triangles, data.vectors)
+    return Arrays(data.vertices, data.triangles, data.vectors)
+
+
+def _refined(arrays: Arrays) -> Arrays:
+    """Cut each triangle in four."""
+    corners = arrays.triangles
+    sides = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
+    edges, ranks = np.unique(sides @ [len(arrays.vertices), 1], return_inverse=True)
+    ends = np.column_stack(np.divmod(edges, len(arrays.vertices)))
+    middles = len(arrays.vertices) + ranks.reshape(-1, 3)  # of the sides after each corner
+    parts = [np.column_stack([corners[:, k], middles[:, k], middles[:, k - 1]]) for k in range(3)]
+    return Arrays(
+        np.concatenate([arrays.vertices, arrays.vertices[ends].mean(axis=1)]),
+        np.stack([*parts, middles], axis=1).reshape(-1, 3),
+        np.repeat(arrays.field, 4, axis=0),
+    )
 
 
 def find_file(name: str) -> Path:
