@@ -21,7 +21,7 @@ from runs import Row, Setup, run_case, streamlines_file
 from scenarios import Scenario, SurfaceSource
 from shapes import HARD_CASES, RECTANGLE_DEGREES
 from surfaces import REPOSITORY, Arrays, SurfaceMissing, read_surface
-from tables import align, checks_table, measures_table
+from tables import align
 
 LA_EPI = SurfaceSource(file="human_atrium_1/la_epi.pts")
 FINE_DEMO = SurfaceSource(edge_length=0.5)
@@ -29,8 +29,12 @@ DEFAULT = "longest"
 HYSTERESIS = "longest, seed_clearance=1.11"
 FLOOR_PROGRAM = REPOSITORY / "build" / "benchmarks" / "floor"
 
-# Edge length of the demo atrium, and refinements of it: 42 thousand to 2.7 million triangles.
-MESHES = ((1.0, 0), (0.5, 0), (0.25, 0), (0.25, 1))
+# The same atrium with ever finer triangles, ever more atria of 1 mm edges, and the measured one ever finer: from 42
+# thousand to 2.7 million triangles.
+FINER = [SurfaceSource(edge_length=1.0), SurfaceSource(edge_length=0.5)]
+FINER += [SurfaceSource(edge_length=0.25, refinements=refinements) for refinements in (0, 1)]
+MORE = [SurfaceSource(edge_length=1.0, copies=copies) for copies in (1, 4, 16, 64)]
+FINER_MEASURED = [SurfaceSource(file=LA_EPI.file, refinements=refinements) for refinements in (0, 1, 2)]
 EDGES_PER_SEPARATION = (0.25, 0.5, 1, 1.6, 2.5, 4, 6, 10, 16, 30)
 PLACEMENT = ("placement",)
 BEFORE_PLACEMENT = ("mesh", "field")
@@ -120,27 +124,22 @@ def _floor(bench: Bench, arrays: Arrays, separation: float) -> dict[str, float]:
 
 
 def print_scaling(bench: Bench) -> None:
-    """More triangles at a fixed d_sep/edge: finer ones on the same surface, and a surface that grows."""
+    """More triangles at a fixed d_sep/edge: finer ones make streamlines longer against d_sep, more atria do not."""
     for edges in (1.6, 4):
-        finer, larger = [], []
-        for edge, refinements in MESHES:
-            finest = edge / 2**refinements
-            finer.append((SurfaceSource(edge_length=edge, refinements=refinements), edges * finest))
-            larger.append((SurfaceSource(edge_length=edge, refinements=refinements, scale=1 / finest), edges))
-        _print_growth(f"Finer triangles on the same surface, d_sep = {edges:g} edges", finer, bench)
-        _print_growth(f"A larger heart, edges of 1 mm, d_sep {edges:g} mm", larger, bench)
+        for title, surfaces in (("finer triangles", FINER), ("more atria", MORE), ("measured, finer", FINER_MEASURED)):
+            _print_growth(f"{title.capitalize()}, d_sep = {edges:g} edges", surfaces, edges, bench)
 
 
-def _print_growth(title: str, cases: Sequence[tuple[SurfaceSource, float]], bench: Bench) -> None:
+def _print_growth(title: str, surfaces: Sequence[SurfaceSource], edges: float, bench: Bench) -> None:
     rows, counts, lines = [], [], []
-    for surface, separation in cases:
+    for surface in surfaces:
         arrays = read_surface(surface)
+        separation = edges * arrays.edge_length
         row = bench.row(surface, arrays, separation)
         rows.append(row)
         counts.append(len(arrays.triangles))
-        lines.append(
-            [f"{counts[-1]:,}", f"{separation:g}", *_cost_cells(row, counts[-1]), *_size_cells(row, separation)]
-        )
+        sizes = _size_cells(row, separation)
+        lines.append([f"{counts[-1]:,}", f"{separation:.3g}", *_cost_cells(row, counts[-1]), *sizes])
     print(f"\n### {title}\n")
     print(align(["triangles", "d_sep mm", *COST_TITLES, "n", "L_avg / d_sep"], lines, left=0))
     slopes = [_slope(counts, [row.best("cpu", stages) for row in rows]) for stages in (PLACEMENT, BEFORE_PLACEMENT)]
@@ -220,11 +219,18 @@ def _digest(file: Path) -> str:
 
 def print_rectangle(bench: Bench) -> None:
     """Constant fields on a rectangle of 100 x 80 mm: the densest that there is has d_avg = d_sep."""
+    lines = []
     for degrees in RECTANGLE_DEGREES:
         surface = SurfaceSource(shape=f"rectangle, {degrees} degrees")
-        rows = bench.rows(surface, read_surface(surface), 1.6, [DEFAULT, HYSTERESIS])
-        print(f"\n### {surface}\n")
-        print("\n\n".join(table for table in (measures_table(rows), checks_table(rows)) if table))
+        for row in bench.rows(surface, read_surface(surface), 1.6, [DEFAULT, HYSTERESIS]):
+            quality, checked = row.quality, row.checked
+            cells = [f"{quality['n']:.0f}", f"{quality['mean_length']:.2f}", f"{quality['mean_spacing_ratio']:.4f}"]
+            checks = [f"{checked[name]:.4f}" if checked else "" for name in CHECKED]
+            lines.append([str(degrees), row.method, *cells, *checks])
+    print(align(["degrees", "method", "n", "L_avg mm", "d_avg/d_sep", *CHECKED.values()], lines, left=2))
+
+
+CHECKED = {"min_separation_surface": "least separation", "coverage": "coverage", "largest_gap": "largest gap"}
 
 
 def print_hard(bench: Bench) -> None:

@@ -16,15 +16,15 @@ DATA_FILE = Path(__file__).with_name("scenarios.toml")
 class SurfaceSource:
     """The demo atrium with an `edge_length` in mm, a `file` below the folder of measured data, or a `shape`.
 
-    All of it is made `scale` times as large, edges too. `refinements` times each triangle is cut in four that keep its
-    plane and its fibre, for meshes finer than the demo atrium's finest.
+    `refinements` times each triangle is cut in four that keep its plane and its fibre, for meshes finer than the demo
+    atrium's finest; then there are so many `copies` of it all, side by side.
     """
 
     edge_length: float | None = None
     file: str | None = None
     shape: str | None = None
-    scale: float = 1.0
     refinements: int = 0
+    copies: int = 1
 
     def __post_init__(self) -> None:
         if sum(source is not None for source in (self.edge_length, self.file, self.shape)) != 1:
@@ -36,8 +36,8 @@ class SurfaceSource:
         else:
             name = self.shape or f"demo atrium, {self.edge_length:g} mm edges"
         cut = [f"cut in {4**self.refinements}"] if self.refinements > 0 else []
-        scaled = [f"times {self.scale:g}"] if self.scale != 1 else []
-        return ", ".join([name, *cut, *scaled])
+        repeated = [f"{self.copies} copies"] if self.copies > 1 else []
+        return ", ".join([name, *cut, *repeated])
 
 
 @dataclass(frozen=True)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Shape = tuple[Floats, Ints, Floats]  # vertices, triangles, a vector per triangle
-Field = Callable[[Floats], Floats]  # at (n, 3) points
 
 
 def make_shape(name: str) -> Shape:
@@ -135,13 +135,15 @@ def _constant(degrees: float) -> Shape:
 
 def _convergent(middles: Floats) -> Floats:
     """Towards a line in every strip of 2 mm: streamlines run together everywhere."""
-    return np.arctan(-np.sign(middles[:, 1] % 2 - 1) * 0.5)
+    angles: Floats = np.where(middles[:, 1] % 2 < 1, 0.46, -0.46)
+    return angles
 
 
 def _vortices(middles: Floats) -> Floats:
     """Centres 10 mm apart."""
     x, y, _ = (np.pi * middles / 10).T
-    return np.arctan2(np.cos(x) * np.sin(y), -np.sin(x) * np.cos(y)) + np.pi / 2
+    angles: Floats = np.arctan2(np.cos(x) * np.sin(y), -np.sin(x) * np.cos(y)) + np.pi / 2
+    return angles
 
 
 def _vortex(middles: Floats) -> Floats:
@@ -190,6 +192,6 @@ SHAPES: dict[str, Callable[[], Shape]] = {
     "ellipsoid, turned field": lambda: _ellipsoid(0.8),
     "torus": lambda: _helical_torus(0),
     "torus, varied field": lambda: _helical_torus(1),
-    **{f"rectangle, {degrees} degrees": lambda degrees=degrees: _constant(degrees) for degrees in RECTANGLE_DEGREES},
+    **{f"rectangle, {degrees} degrees": partial(_constant, degrees) for degrees in RECTANGLE_DEGREES},
     **HARD_CASES,
 }

@@ -72,7 +72,7 @@ def read_surface(source: SurfaceSource) -> Arrays:
     arrays = _read_original(source)
     for _ in range(source.refinements):
         arrays = _refined(arrays)
-    return Arrays(source.scale * arrays.vertices, arrays.triangles, arrays.field)
+    return _repeated(arrays, source.copies)
 
 
 def _read_original(source: SurfaceSource) -> Arrays:
@@ -100,6 +100,16 @@ def _refined(arrays: Arrays) -> Arrays:
         np.concatenate([arrays.vertices, arrays.vertices[ends].mean(axis=1)]),
         np.stack([*parts, middles], axis=1).reshape(-1, 3),
         np.repeat(arrays.field, 4, axis=0),
+    )
+
+
+def _repeated(arrays: Arrays, copies: int) -> Arrays:
+    """Put copies side by side, half as far apart as they are wide."""
+    step = np.array([1.5 * np.ptp(arrays.vertices[:, 0]), 0, 0])
+    return Arrays(
+        np.concatenate([arrays.vertices + number * step for number in range(copies)]),
+        np.concatenate([arrays.triangles + number * len(arrays.vertices) for number in range(copies)]),
+        np.tile(arrays.field, (copies, 1)),
     )
 
 
