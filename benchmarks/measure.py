@@ -40,13 +40,27 @@ class PeakMemory:
     """
 
     def __init__(self) -> None:
-        if _PROCESS.is_dir():
-            (_PROCESS / "clear_refs").write_text("5")
-        self._baseline = _peak()
+        _reset_peak()
+        self._baseline = self._part_baseline = self._highest = _peak()
+
+    def start_part(self) -> None:
+        """Let `part_rise` count from here."""
+        self._highest = max(self._highest, _peak())
+        _reset_peak()
+        self._part_baseline = _peak()
+
+    def part_rise(self) -> float:
+        """Return the rise of the peak since `start_part`, MB (10^6 bytes)."""
+        return (_peak() - self._part_baseline) / 1e6
 
     def rise(self) -> float:
-        """Return the rise of the peak so far, MB (10^6 bytes)."""
-        return (_peak() - self._baseline) / 1e6
+        """Return the rise of the peak so far, MB."""
+        return (max(self._highest, _peak()) - self._baseline) / 1e6
+
+
+def _reset_peak() -> None:
+    if _PROCESS.is_dir():
+        (_PROCESS / "clear_refs").write_text("5")
 
 
 def _peak() -> int:

@@ -58,7 +58,8 @@ class Row:
     engine, method
         The peer's method is empty.
     runs
-        Per run: "stages" (stage -> {"cpu", "wall"}, s), "peak_memory" (MB) and "quality" (of `measure_quality`).
+        Per run: "stages" (stage -> {"cpu", "wall"}, s), "peak_memory" and "placement_memory" (MB), and "quality" (of
+        `measure_quality`).
     failure
         Why there is no result: refused, crashed, too slow. Empty where there is one.
     checked
@@ -95,6 +96,11 @@ class Row:
         return float(statistics.median(run["peak_memory"] for run in self.runs))
 
     @property
+    def placement_memory(self) -> float:
+        """Median of that of the placement alone, MB."""
+        return float(statistics.median(run["placement_memory"] for run in self.runs))
+
+    @property
     def quality(self) -> dict[str, float]:
         """Median of each figure over the runs, which differ in the random seed."""
         names = self.runs[0]["quality"] if self.runs else {}
@@ -115,7 +121,7 @@ def run_case(scenario: Scenario, case: Case, arrays: Arrays, setup: Setup) -> li
     rows = [Row("pectinate", method) for method in scenario.methods]
     if setup.with_peer:
         rows.append(Row(PEER, ""))
-    arrays.save(_arrays_file(setup))
+    arrays.save(arrays_file(setup))
     repeats = setup.repeats or scenario.repeats
     for repeat in range(1, repeats + 1):
         for row in rows:
@@ -126,7 +132,7 @@ def run_case(scenario: Scenario, case: Case, arrays: Arrays, setup: Setup) -> li
     for row in rows:
         if setup.checker is not None and not row.failure:
             setup.log(f"checking {row.name}")
-            streamlines = Streamlines.read(_streamlines_file(row, setup))
+            streamlines = Streamlines.read(streamlines_file(row, setup))
             row.checked = run_checker(setup.checker, arrays, streamlines, case.separation_distance, setup.folder)
     return rows
 
@@ -136,7 +142,7 @@ def _run_once(row: Row, options: dict[str, Any], area: float, setup: Setup) -> N
     if "failure" in figures:
         row.failure = figures["failure"]
         return
-    lengths = Streamlines.read(_streamlines_file(row, setup)).lengths
+    lengths = Streamlines.read(streamlines_file(row, setup)).lengths
     row.runs.append(figures | {"quality": measure_quality(lengths, area, options["separation_distance"])})
 
 
@@ -146,8 +152,8 @@ def _figures_of_worker(row: Row, options: dict[str, Any], setup: Setup) -> dict[
     job = {
         "engine": row.engine,
         "options": options,
-        "arrays": str(_arrays_file(setup)),
-        "streamlines": str(_streamlines_file(row, setup)),
+        "arrays": str(arrays_file(setup)),
+        "streamlines": str(streamlines_file(row, setup)),
         "figures": str(figures_file),
     }
     job_file.write_text(json.dumps(job))
@@ -162,9 +168,11 @@ def _figures_of_worker(row: Row, options: dict[str, Any], setup: Setup) -> dict[
     return figures
 
 
-def _arrays_file(setup: Setup) -> Path:
+def arrays_file(setup: Setup) -> Path:
+    """Where the surface of the case that ran last lies."""
     return setup.folder / "surface.npz"
 
 
-def _streamlines_file(row: Row, setup: Setup) -> Path:
+def streamlines_file(row: Row, setup: Setup) -> Path:
+    """Where the streamlines of an engine's last run lie."""
     return setup.folder / f"{row.name.replace(' ', '-')}.npz"

@@ -14,19 +14,30 @@ DATA_FILE = Path(__file__).with_name("scenarios.toml")
 
 @dataclass(frozen=True)
 class SurfaceSource:
-    """The demo atrium with an `edge_length` in mm, or a `file` below the folder of measured data."""
+    """The demo atrium with an `edge_length` in mm, a `file` below the folder of measured data, or a `shape`.
+
+    `refinements` times each triangle is cut in four that keep its plane and its fibre, for meshes finer than the demo
+    atrium's finest; then there are so many `copies` of it all, side by side.
+    """
 
     edge_length: float | None = None
     file: str | None = None
+    shape: str | None = None
+    refinements: int = 0
+    copies: int = 1
 
     def __post_init__(self) -> None:
-        if (self.edge_length is None) == (self.file is None):
-            raise ValueError("a surface is given by either edge_length or file")
+        if sum(source is not None for source in (self.edge_length, self.file, self.shape)) != 1:
+            raise ValueError("a surface is given by one of edge_length, file and shape")
 
     def __str__(self) -> str:
         if self.file is not None:
-            return Path(self.file).stem
-        return f"demo atrium, {self.edge_length:g} mm edges"
+            name = Path(self.file).stem
+        else:
+            name = self.shape or f"demo atrium, {self.edge_length:g} mm edges"
+        cut = [f"cut in {4**self.refinements}"] if self.refinements > 0 else []
+        repeated = [f"{self.copies} copies"] if self.copies > 1 else []
+        return ", ".join([name, *cut, *repeated])
 
 
 @dataclass(frozen=True)

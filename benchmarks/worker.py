@@ -35,8 +35,8 @@ class Run:
         As in `pectinate.Placement`.
     stages
         Stage -> {"cpu": s, "wall": s}.
-    peak_memory
-        Rise from the arrays to the streamlines, MB.
+    peak_memory, placement_memory
+        Rise from the arrays to the streamlines, and from mesh and field to them, MB; of the peer the same.
     """
 
     points: NDArray[np.float64]
@@ -44,6 +44,7 @@ class Run:
     segment_triangles: NDArray[np.int32]
     stages: dict[str, dict[str, float]]
     peak_memory: float
+    placement_memory: float
 
 
 def method_options(text: str) -> dict[str, Any]:
@@ -69,6 +70,7 @@ def run_pectinate(arrays: Arrays, options: dict[str, Any]) -> Run:
             mesh = SurfaceMesh(data.vertices, data.triangles)
         with stages.stage("field"):
             field = OrientationField.from_triangle_vectors(mesh, arrays.field)
+        memory.start_part()
         with stages.stage("placement"):
             placement = place_streamlines(
                 Model(mesh, field, data),
@@ -80,11 +82,11 @@ def run_pectinate(arrays: Arrays, options: dict[str, Any]) -> Run:
             )
     except Error as error:
         raise Refused(str(error)) from error
-    peak_memory = memory.rise()
+    peak_memory, placement_memory = memory.rise(), memory.part_rise()
     with stages.stage("tubes"):
         placement.tubes()
     input_triangles = mesh.input_triangle[placement.segment_triangles]
-    return Run(placement.points, placement.offsets, input_triangles, stages.seconds, peak_memory)
+    return Run(placement.points, placement.offsets, input_triangles, stages.seconds, peak_memory, placement_memory)
 
 
 def run_peer(arrays: Arrays, options: dict[str, Any]) -> Run:
@@ -108,7 +110,9 @@ def run_peer(arrays: Arrays, options: dict[str, Any]) -> Run:
         raise Refused(str(error)) from error
     peak_memory = memory.rise()
     offsets = np.concatenate([[0], np.cumsum([len(line) for line in lines])]).astype(np.int64)
-    return Run(np.concatenate(lines), offsets, np.concatenate(segment_triangles), stages.seconds, peak_memory)
+    return Run(
+        np.concatenate(lines), offsets, np.concatenate(segment_triangles), stages.seconds, peak_memory, peak_memory
+    )
 
 
 ENGINES: dict[str, Callable[[Arrays, dict[str, Any]], Run]] = {"pectinate": run_pectinate, PEER: run_peer}
@@ -122,7 +126,11 @@ def main(job_file: str) -> None:
     except Refused as refusal:
         figures: dict[str, Any] = {"failure": f"refused: {refusal}"}
     else:
-        figures = {"stages": run.stages, "peak_memory": run.peak_memory}
+        figures = {
+            "stages": run.stages,
+            "peak_memory": run.peak_memory,
+            "placement_memory": run.placement_memory,
+        }
         np.savez(job["streamlines"], points=run.points, offsets=run.offsets, segment_triangles=run.segment_triangles)
     Path(job["figures"]).write_text(json.dumps(figures))
 
