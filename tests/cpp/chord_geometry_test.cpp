@@ -68,7 +68,7 @@ void check_longest_run(const std::vector<Vector>& points, double distance, doubl
     }
     longest = std::max(longest, arc[reached[first]] - arc[first]);
   }
-  const auto run = longest_self_free_run(points, distance, arc_gap);
+  const auto run = longest_self_free_run(points, self_free_starts(points, distance, arc_gap));
   REQUIRE(run.first < run.last);
   REQUIRE(run.last <= count);
   CHECK(run.last <= reached[run.first]);
@@ -179,8 +179,26 @@ TEST_CASE("self-free run: of spirals, circles, figures of eight and straight lin
     for (const auto& points : {curve(300, eight), curve(300, circle), curve(300, spiral), curve(9, circle)}) {
       check_longest_run(points, distance, 2 * distance);
     }
-    const auto run = longest_self_free_run(curve(50, straight), distance, 2 * distance);
+    const auto line = curve(50, straight);
+    const auto run = longest_self_free_run(line, self_free_starts(line, distance, 2 * distance));
     CHECK((run.first == 0 && run.last == 49));
+  }
+}
+
+TEST_CASE("self-free run: of a part of a line it is found from what is known of the whole") {
+  const auto line = curve(300, [](double t) -> Vector { return {t * std::cos(40 * t), t * std::sin(40 * t), 0}; });
+  for (const double distance : {0.02, 0.1, 0.3}) {
+    const auto starts = self_free_starts(line, distance, 2 * distance);
+    for (const std::int32_t before : {0, 1, 50, 170, 290}) {
+      for (const std::int32_t behind : {0, 3, 8}) {
+        const std::vector<Vector> part(line.begin() + before, line.end() - behind);
+        const auto known = std::span(starts).subspan(before, part.size() - 1);
+        const auto run = longest_self_free_run(part, known, before);
+        const auto alone = longest_self_free_run(part, self_free_starts(part, distance, 2 * distance));
+        CHECK(run.first == alone.first);
+        CHECK(run.last == alone.last);
+      }
+    }
   }
 }
 

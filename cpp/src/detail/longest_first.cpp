@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <optional>
+#include <span>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -155,6 +157,7 @@ class LongestFirst {
     }
     chords_ = std::move(chords);
     trajectories_ = std::move(trajectories);
+    self_approaches_.clear();
     std::make_heap(heap_.begin(), heap_.end());
   }
 
@@ -317,13 +320,7 @@ class LongestFirst {
   /// Places a stretch of a piece, or, where it comes back to itself, the longest part of it that does not.
   void place_best(const Stretch& stretch, const Piece& piece) {
     make_polyline(stretch);
-    auto part = stretch;
-    if (!piece.is_self_free) {
-      const double distance = separation(chords_[stretch.first].triangle());
-      const auto run = longest_self_free_run(polyline_.points, distance, 2 * distance);
-      part = {stretch.first + static_cast<std::int64_t>(run.first),
-              stretch.first + static_cast<std::int64_t>(run.last)};
-    }
+    const auto part = piece.is_self_free ? stretch : longest_self_free_part(stretch, piece.trajectory);
     if (part.last - part.first < stretch.last - stretch.first) {
       const Stretch before{stretch.first, part.first}, behind{part.last, stretch.last};
       push(before, length(before), piece.trajectory);
@@ -340,6 +337,23 @@ class LongestFirst {
     place_(line);
     ++placed_count_;
     push_hugging();
+  }
+
+  /// Of the stretch whose polyline is at hand.
+  Stretch longest_self_free_part(const Stretch& stretch, std::int32_t trajectory) {
+    auto& known = self_approaches_[trajectory];
+    // Where the distance varies, it is that at the stretch's beginning.
+    if (separation_ == 0 || stretch.first < known.stretch.first || stretch.last > known.stretch.last) {
+      const double distance = separation(chords_[stretch.first].triangle());
+      known = {stretch, self_free_starts(polyline_.points, distance, 2 * distance)};
+    }
+    const auto before = stretch.first - known.stretch.first;
+    const auto run = longest_self_free_run(polyline_.points, std::span(known.starts).subspan(before),
+                                           static_cast<std::int32_t>(before));
+    const Stretch part{stretch.first + static_cast<std::int64_t>(run.first),
+                       stretch.first + static_cast<std::int64_t>(run.last)};
+    if (part.last - part.first == stretch.last - stretch.first) self_approaches_.erase(trajectory);
+    return part;
   }
 
   void make_polyline(const Stretch& stretch) {
@@ -411,6 +425,13 @@ class LongestFirst {
   std::vector<Piece> heap_;  // the first is the longest
   std::size_t most_chords_;  // before dead ones are dropped
   std::int64_t placed_count_ = 0;
+
+  /// Of a stretch, where its parts come back to themselves; it takes long to find, and many parts are looked at.
+  struct SelfApproaches {
+    Stretch stretch{0, 0};
+    std::vector<std::int32_t> starts;
+  };
+  std::unordered_map<std::int32_t, SelfApproaches> self_approaches_;  // per trajectory, where it does
 
   VisitedChords visited_;
   Chords scratch_;

@@ -26,10 +26,10 @@ class BallTree {
   }
 
   /// Calls visit(first, last) for each lowest stretch of segments that comes nearer than `distance` to the one with
-  /// index `leaf` and does not lie behind it; the last ones first.
+  /// index `leaf` and lies neither behind it nor wholly before segment `first`; the last ones first.
   template <class Visit>
-  void visit_near(std::size_t leaf, double distance, const Visit& visit) const {
-    descend(levels_.size() - 1, 0, {leaf, distance}, visit);
+  void visit_near(std::size_t leaf, double distance, std::size_t first, const Visit& visit) const {
+    descend(levels_.size() - 1, 0, {leaf, first, distance}, visit);
   }
 
  private:
@@ -38,7 +38,7 @@ class BallTree {
     double radius;
   };
   struct Query {
-    std::size_t leaf;
+    std::size_t leaf, first;
     double distance;
   };
 
@@ -61,29 +61,36 @@ class BallTree {
     }
     const auto first = index * branching, last = std::min(first + branching, levels_[level - 1].size());
     for (auto child = last; child-- > first;) {
-      if (is_before(level - 1, child, query.leaf)) descend(level - 1, child, query, visit);
+      if (is_between(level - 1, child, query)) descend(level - 1, child, query, visit);
     }
   }
 
-  /// Does a ball hold anything up to a leaf?
-  static bool is_before(std::size_t level, std::size_t index, std::size_t leaf) {
-    for (; level > 0; --level) index *= branching;
-    return index <= leaf;
+  /// Does a ball hold anything from the query's first segment up to its leaf?
+  static bool is_between(std::size_t level, std::size_t index, const Query& query) {
+    std::size_t leaves = 1;
+    for (; level > 0; --level) leaves *= branching;
+    return index * leaves <= query.leaf && (index + 1) * leaves * branching > query.first;
   }
 
   const std::vector<Vector>& points_;
   std::vector<std::vector<Ball>> levels_;
 };
 
+/// From the first point to each.
+std::vector<double> arc_lengths(const std::vector<Vector>& points) {
+  std::vector<double> arc{0};
+  arc.reserve(points.size());
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) arc.push_back(arc.back() + (points[i + 1] - points[i]).norm());
+  return arc;
+}
+
 }  // namespace
 
-SegmentRun longest_self_free_run(const std::vector<Vector>& points, double distance, double arc_gap) {
+std::vector<std::int32_t> self_free_starts(const std::vector<Vector>& points, double distance, double arc_gap) {
   const auto count = points.size() - 1;
-  std::vector<double> arc{0};
-  for (std::size_t i = 0; i < count; ++i) {
-    arc.push_back(arc.back() + (points[i + 1] - points[i]).norm());
-  }
-  if (arc.back() <= arc_gap) return {0, count};
+  const auto arc = arc_lengths(points);
+  std::vector<std::int32_t> starts(count, 0);
+  if (arc.back() <= arc_gap) return starts;
 
   const auto are_near = [&](std::size_t i, std::size_t j) {
     const double reach = distance + (arc[i + 1] - arc[i]) + (arc[j + 1] - arc[j]);
@@ -91,14 +98,13 @@ SegmentRun longest_self_free_run(const std::vector<Vector>& points, double dista
     return segment_distance(points[i], points[i + 1], points[j], points[j + 1]) < distance;
   };
   const BallTree tree(points);
-  SegmentRun best{0, 0};
   // Two pointers: the run that ends with segment `last` cannot begin before `first`.
   std::size_t first = 0;
   std::array<std::size_t, BallTree::branching> least_first;
   for (std::size_t leaf = 0; leaf * BallTree::branching < count; ++leaf) {
     const auto begin = leaf * BallTree::branching, end = std::min(begin + BallTree::branching, count);
     least_first.fill(first);
-    tree.visit_near(leaf, distance, [&](std::size_t from, std::size_t to) {
+    tree.visit_near(leaf, distance, first, [&](std::size_t from, std::size_t to) {
       if (arc[end - 1] - arc[from + 1] <= arc_gap) return;
       for (auto last = begin; last < end; ++last) {
         for (auto i = std::min(to, last); i-- > std::max(from, least_first[last - begin]);) {
@@ -111,8 +117,19 @@ SegmentRun longest_self_free_run(const std::vector<Vector>& points, double dista
     });
     for (auto last = begin; last < end; ++last) {
       first = std::max(first, least_first[last - begin]);
-      if (arc[last + 1] - arc[first] > arc[best.last] - arc[best.first]) best = {first, last + 1};
+      starts[last] = static_cast<std::int32_t>(first);
     }
+  }
+  return starts;
+}
+
+SegmentRun longest_self_free_run(const std::vector<Vector>& points, std::span<const std::int32_t> starts,
+                                 std::int32_t before) {
+  const auto arc = arc_lengths(points);
+  SegmentRun best{0, 0};
+  for (std::size_t last = 0; last + 1 < points.size(); ++last) {
+    const auto first = static_cast<std::size_t>(std::max(starts[last] - before, 0));
+    if (arc[last + 1] - arc[first] > arc[best.last] - arc[best.first]) best = {first, last + 1};
   }
   return best;
 }

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "detail/vec.hpp"
@@ -12,8 +14,14 @@ struct SegmentRun {
   std::size_t first, last;  ///< segments [first, last)
 };
 
-/// The longest run of a polyline's segments in which no two come nearer than `distance` with more than `arc_gap` of
-/// the line between them (paper section 2.6, criterion 5, exact over whole segments).
-SegmentRun longest_self_free_run(const std::vector<Vector>& points, double distance, double arc_gap);
+/// For each segment of a polyline, with which segment the longest run that ends with it can begin, if no two of its
+/// segments shall come nearer than `distance` with more than `arc_gap` of the line between them (paper section 2.6,
+/// criterion 5, exact over whole segments).
+std::vector<std::int32_t> self_free_starts(const std::vector<Vector>& points, double distance, double arc_gap);
+
+/// The longest run of a polyline, or of a part of one: `starts` are those of the part's segments, `before` is how many
+/// segments the whole has before it.
+SegmentRun longest_self_free_run(const std::vector<Vector>& points, std::span<const std::int32_t> starts,
+                                 std::int32_t before = 0);
 
 }  // namespace pectinate::detail
