@@ -26,7 +26,7 @@ constexpr double hugging_gap = 1e-6;
 constexpr int usual_rings = 2, rings_of_dense_pool = 1;
 constexpr double sparse_separation = 6;
 /// Room for stored chords per triangle, seldom all used: when it is, those that no candidate needs are dropped.
-constexpr std::size_t most_usual_chords = 8;
+constexpr std::size_t most_usual_chords = 4;
 /// Narrower gaps between occupied chords hold no streamline.
 constexpr double least_gap = 4 * least_position;
 
@@ -137,27 +137,31 @@ class LongestFirst {
   void drop_dead_chords() {
     std::sort(heap_.begin(), heap_.end(),
               [](const Piece& a, const Piece& b) { return a.stretch.first < b.stretch.first; });
-    std::size_t live = 0;
-    for (const auto& piece : heap_) live += static_cast<std::size_t>(piece.stretch.last - piece.stretch.first) + 2;
-    most_chords_ = std::max(most_chords_, 2 * live);
-    Chords chords;
-    chords.reserve(most_chords_);
-    std::vector<Trajectory> trajectories;
-    trajectories.reserve(heap_.size());
-    for (auto& [key, stretch, trajectory, is_self_free] : heap_) {
-      auto whole = trajectories_[trajectory];
-      const auto first = std::max(stretch.first - 1, whole.stretch.first);
-      const auto last = std::min(stretch.last + 1, whole.stretch.last);
-      const auto shift = std::ssize(chords) - first;
-      chords.insert(chords.end(), chords_.begin() + first, chords_.begin() + last);
-      whole.stretch = {first + shift, last + shift};
-      stretch = {stretch.first + shift, stretch.last + shift};
-      trajectory = static_cast<std::int32_t>(trajectories.size());
-      trajectories.push_back(whole);
+    std::vector<Trajectory> kept;
+    std::int64_t read = 0, written = 0, shift = 0;  // chords up to `read` are where they shall be, or dropped
+    std::int32_t trajectory = -1;
+    for (auto& piece : heap_) {
+      const auto& whole = trajectories_[piece.trajectory];
+      const auto first = std::max(piece.stretch.first - 1, whole.stretch.first);
+      const auto last = std::min(piece.stretch.last + 1, whole.stretch.last);
+      if (kept.empty() || piece.trajectory != trajectory || first > read) {
+        shift = written - first;
+        kept.push_back({{written, written}, whole.ends, whole.bonus});
+        trajectory = piece.trajectory;
+        read = first;
+      }
+      std::move(chords_.begin() + read, chords_.begin() + last, chords_.begin() + written);
+      written += last - read;
+      read = last;
+      kept.back().stretch.last = written;
+      piece.stretch = {piece.stretch.first + shift, piece.stretch.last + shift};
+      piece.trajectory = static_cast<std::int32_t>(kept.size()) - 1;
     }
-    chords_ = std::move(chords);
-    trajectories_ = std::move(trajectories);
+    chords_.resize(written);
+    trajectories_ = std::move(kept);
     self_approaches_.clear();
+    most_chords_ = std::max<std::size_t>(most_chords_, written + written / 2);
+    chords_.reserve(most_chords_);
     std::make_heap(heap_.begin(), heap_.end());
   }
 
@@ -211,7 +215,7 @@ class LongestFirst {
 
   /// Candidates that lie just outside the band of the streamline placed last.
   void push_hugging() {
-    if (chords_.size() > most_chords_) drop_dead_chords();
+    if (chords_.size() > most_chords_ / 8 * 7) drop_dead_chords();  // there is room for those that come now
     ++round_;
     for (const auto t : occupancy_.changed()) {
       if (hugged_[t] == round_ || occupancy_.unseeded().is_full(t)) continue;
