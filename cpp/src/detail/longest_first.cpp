@@ -67,7 +67,8 @@ class LongestFirst {
   StopReason walk(const Chord& start, Role exit, bool mind_others, Chords& chords) {
     auto triangle = start.triangle();
     double coordinate = start.coordinate;
-    for (std::int64_t step = 0; step < tracer_.options().max_steps; ++step) {
+    const auto max_steps = tracer_.options().max_steps;
+    for (std::int64_t step = 0; step < max_steps; ++step) {
       const auto way_out = crossings_[triangle].exit(exit);
       if (way_out.triangle < 0) return way_out.stop_reason;
       const double position = edge_position(crossings_[triangle], exit, coordinate);
