@@ -338,4 +338,38 @@ TEST_CASE("exact placement: a line ends at others only where they are near") {
   }
 }
 
+TEST_CASE("exact placement: lines stop at borders, there alone, and say so") {
+  const auto mesh = jittered_grid(12, 9).mesh();
+  for (const auto& hard : hard_fields) {
+    CAPTURE(hard.name);
+    for (const double separation : {0.05, 0.4}) {  // with many candidates, which are dropped now and then, and with few
+      const auto placement = checked(mesh, make_field(mesh, hard), with(separation));
+      for (std::size_t i = 0; i < placement.lengths.size(); ++i) {
+        for (const int end : {0, 1}) {
+          const auto p = end == 0 ? placement.offsets[i] : placement.offsets[i + 1] - 1;
+          const auto& weights = placement.barycentric[p];
+          const auto opposite = static_cast<int>(std::find(weights.begin(), weights.end(), 0.0) - weights.begin());
+          const bool is_border = mesh.neighbour(placement.point_triangles[p], (opposite + 1) % 3).triangle < 0;
+          CHECK((placement.stop_reasons[i][end] == StopReason::boundary) == is_border);
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("exact placement: spirals keep from themselves, however many of their candidates are cut and dropped") {
+  const auto mesh = jittered_grid(24, 18).mesh();
+  for (const double inwards : {0.003, 0.02, 0.1}) {
+    const auto field = field_of(mesh, [&](const Vector& c, const Vector&) {
+      const Vector r = c - Vector(12.3, 9.2, 0);
+      return Vector(-r.y() + inwards * r.x(), r.x() + inwards * r.y(), 0);
+    });
+    for (const double separation : {0.13, 0.6}) {
+      const auto placement = checked(mesh, field, with(separation));
+      check_segment_separation(placement, separation);
+      check_self_separation(placement, separation);
+    }
+  }
+}
+
 }  // namespace pectinate::test
