@@ -115,7 +115,7 @@ void ChordOccupancy::add_block(const Polyline& line, std::size_t first, std::siz
   fill_block(line, first, last);
   ++round_;
   queue_.clear();
-  for (auto i = first; i < last; ++i) reach(line.triangles[i]);
+  for (auto i = first; i < last; ++i) reach(line.triangles[i], std::abs(tiles_[line.triangles[i]].radius));
   for (std::size_t i = 0; i < queue_.size(); ++i) visit(queue_[i], line, first);
 }
 
@@ -154,7 +154,7 @@ float ChordOccupancy::Segments::distance(float x0, float y0, float z0) {
 void ChordOccupancy::fill_block(const Polyline& line, std::size_t first, std::size_t last) {
   auto& segments = block_.segments;
   segments.clear();
-  const double reach = std::max(clearance_.stop, clearance_.seed) * (1 + guard) * (1 + distance_slack);
+  const double reach = greatest_clearance() * (1 + guard) * (1 + distance_slack);
   for (auto i = first; i < last; ++i) {
     block_.separation[i - first] = separation(line.triangles[i]);
     block_.reach[i - first] = static_cast<float>(reach * block_.separation[i - first]);
@@ -203,11 +203,11 @@ void ChordOccupancy::measure_distances(const Tile& tile) {
   block_.nearest = block_.segments.distance(tile.x, tile.y, tile.z);
 }
 
-void ChordOccupancy::reach(std::int32_t triangle) {
+void ChordOccupancy::reach(std::int32_t triangle, float distance) {
   auto& tile = tiles_[triangle];
   if (tile.round == round_) return;
   tile.round = round_;
-  queue_.push_back(triangle);
+  queue_.push_back({triangle, distance});
   // By the time its turn comes these will be at hand.
   __builtin_prefetch(&sheet_.corners[triangle]);
   __builtin_prefetch(&sheet_.crossings[triangle]);
@@ -216,53 +216,71 @@ void ChordOccupancy::reach(std::int32_t triangle) {
   }
 }
 
-void ChordOccupancy::reach_neighbours(std::int32_t triangle) {
+void ChordOccupancy::reach_from(const Reached& from, std::int32_t triangle) {
+  const auto &tile = tiles_[triangle], &there = tiles_[from.triangle];
+  if (tile.round == round_) return;
+  const float x = tile.x - there.x, y = tile.y - there.y, z = tile.z - there.z;
+  reach(triangle, (from.distance + std::sqrt(x * x + y * y + z * z)) * (1 + distance_slack) + slack_);
+}
+
+void ChordOccupancy::reach_neighbours(const Reached& from) {
   for (const auto role : {low_high, low_middle, middle_high}) {
-    const auto next = tiles_[triangle].neighbours[role];
+    const auto next = tiles_[from.triangle].neighbours[role];
     if (next != none) {
-      reach(next);
+      reach_from(from, next);
     } else {  // where the surface was cut at a non-manifold edge, it goes on for distances
-      const auto edge = edge_of(mesh_, sheet_.mesh_triangles[triangle], sheet_.crossings[triangle], role);
-      for (const auto other : mesh_.edge_triangles(edge)) reach(sheet_.ranks[other]);
+      const auto edge = edge_of(mesh_, sheet_.mesh_triangles[from.triangle], sheet_.crossings[from.triangle], role);
+      for (const auto other : mesh_.edge_triangles(edge)) reach_from(from, sheet_.ranks[other]);
     }
   }
 }
 
-void ChordOccupancy::visit(std::int32_t triangle, const Polyline& line, std::size_t first) {
+void ChordOccupancy::visit(Reached reached, const Polyline& line, std::size_t first) {
+  const auto triangle = reached.triangle;
   const auto& tile = tiles_[triangle];
-  const float radius = std::abs(tile.radius), error = block_.coarse_error;
+  const float radius = std::abs(tile.radius);
   // A jagged border can part triangles that lie side by side: there the search goes on one edge farther.
   const float limit = tile.radius < 0 ? 3 * radius : radius;
-  const float coarse = block_.coarse.distance(tile.x, tile.y, tile.z);
-  if (coarse - error > limit + block_.greatest_reach) return;
+  const Marking stops{clearance_.stop, static_cast<float>(clearance_.stop / greatest_clearance()), stopped_};
+  const Marking seeds{clearance_.seed, static_cast<float>(clearance_.seed / greatest_clearance()), unseeded_};
   bool is_measured = false;
   const auto measure = [&] {
     if (!is_measured) measure_distances(tile);
     is_measured = true;
   };
-  if (coarse + error > limit + block_.least_reach) {
-    measure();
-    if (nearest_capsule(1) > limit) return;
+  // Most of the band is known to be well inside from the way that led here.
+  if (!lies_in_capsule(reached, stops)) {
+    const float coarse = block_.coarse.distance(tile.x, tile.y, tile.z), error = block_.coarse_error;
+    if (coarse - error > limit + block_.greatest_reach) return;
+    if (coarse + error > limit + block_.least_reach) {
+      measure();
+      if (nearest_capsule(1) > limit) return;
+    }
+    reached.distance = std::min(reached.distance, coarse + error);
   }
-  reach_neighbours(triangle);
-  const double greatest = std::max(clearance_.stop, clearance_.seed);
-  const auto mark_in = [&](double clearance, IntervalSets& sets) {
-    const Marking marking{clearance, static_cast<float>(clearance / greatest), sets};
-    if (sets.is_full(triangle) || try_to_fill(triangle, coarse + error, marking)) return;
-    measure();
-    mark(triangle, line, first, marking);
+  reach_neighbours(reached);
+  const auto mark_in = [&](const Marking& marking) {
+    if (marking.sets.is_full(triangle)) return;
+    if (lies_in_capsule(reached, marking)) {
+      fill(triangle, marking.sets);
+    } else {
+      measure();
+      mark(triangle, line, first, marking);
+    }
   };
-  mark_in(clearance_.stop, stopped_);
-  if (has_seed_sets_) mark_in(clearance_.seed, unseeded_);
+  mark_in(stops);
+  if (has_seed_sets_) mark_in(seeds);
 }
 
-/// Fills the triangle if a disc around it lies in a capsule whose axis is at most so far away.
-bool ChordOccupancy::try_to_fill(std::int32_t triangle, float distance, const Marking& marking) {
-  const float radius = std::abs(tiles_[triangle].radius);
-  if (!(distance + radius <= (marking.share - 3 * distance_slack) * block_.least_reach)) return false;
-  marking.sets.fill(triangle);
-  if (&marking.sets == &unseeded()) changed_.push_back(triangle);
-  return true;
+/// Does a disc around the triangle lie in a capsule, whose axis is no farther than we know?
+bool ChordOccupancy::lies_in_capsule(const Reached& reached, const Marking& marking) const {
+  return reached.distance + std::abs(tiles_[reached.triangle].radius) <=
+         (marking.share - 3 * distance_slack) * block_.least_reach;
+}
+
+void ChordOccupancy::fill(std::int32_t triangle, IntervalSets& sets) {
+  sets.fill(triangle);
+  if (&sets == &unseeded()) changed_.push_back(triangle);
 }
 
 float ChordOccupancy::nearest_capsule(float share) const {
@@ -325,9 +343,13 @@ void ChordOccupancy::mark_exactly(std::int32_t triangle, const Polyline& line, s
     return false;
   };
   bool is_left_to_next = false;
-  for (int i = 0; i < block_.segments.count && !sets.is_full(triangle); ++i) {
-    const float limit = radius + marking.share * block_.reach[i];
-    if (block_.segments.square[i] <= limit * limit) is_left_to_next = add(i, is_left_to_next);
+  const float greatest_limit = radius + marking.share * block_.greatest_reach;
+  for (int group = 0; group < block_.segments.count; group += lanes) {
+    if (lanes_at(block_.segments.square + group).minCoeff() > greatest_limit * greatest_limit) continue;
+    for (int i = group; i < std::min(group + lanes, block_.segments.count) && !sets.is_full(triangle); ++i) {
+      const float limit = radius + marking.share * block_.reach[i];
+      if (block_.segments.square[i] <= limit * limit) is_left_to_next = add(i, is_left_to_next);
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -102,14 +103,23 @@ class ChordOccupancy {
   void fill_block(const Polyline& line, std::size_t first, std::size_t last);
   void simplify_block(const Polyline& line, std::size_t first);
   void measure_distances(const Tile& tile);
-  void reach(std::int32_t triangle);
-  void reach_neighbours(std::int32_t triangle);
-  void visit(std::int32_t triangle, const Polyline& line, std::size_t first);
+  /// A triangle that the search has come to, whose centroid is at most so far from the block.
+  struct Reached {
+    std::int32_t triangle;
+    float distance;
+  };
+
+  void reach(std::int32_t triangle, float distance);
+  void reach_from(const Reached& from, std::int32_t triangle);
+  void reach_neighbours(const Reached& from);
+  void visit(Reached reached, const Polyline& line, std::size_t first);
   /// From the point at hand to the nearest capsule, whose radii are this share of `reach`; negative inside.
   float nearest_capsule(float share) const;
   void mark(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking);
-  bool try_to_fill(std::int32_t triangle, float distance, const Marking& marking);
+  bool lies_in_capsule(const Reached& reached, const Marking& marking) const;
+  void fill(std::int32_t triangle, IntervalSets& sets);
   void mark_exactly(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking);
+  double greatest_clearance() const { return std::max(clearance_.stop, clearance_.seed); }
   double separation(std::int32_t triangle) const {
     return tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
   }
@@ -124,7 +134,8 @@ class ChordOccupancy {
   float slack_;  // of single precision, for the surface's size
   LargeArray<Tile> tiles_;
   std::uint32_t round_ = 0;
-  std::vector<std::int32_t> queue_, changed_;
+  std::vector<Reached> queue_;
+  std::vector<std::int32_t> changed_;
   Block block_;
 };
 
