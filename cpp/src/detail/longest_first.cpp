@@ -4,10 +4,14 @@
 #include <algorithm>
 #include <optional>
 #include <queue>
+#include <utility>
 
+#include "detail/chord_sides.hpp"
+#include "detail/closed_orbit.hpp"
 #include "detail/self_free_run.hpp"
 #include "detail/sheet.hpp"
 #include "detail/trajectories.hpp"
+#include "detail/triangle_rings.hpp"
 #include "detail/visited_chords.hpp"
 
 namespace pectinate::detail {
@@ -15,6 +19,8 @@ namespace {
 
 /// Prefers lines that hug a placed one to others of about the same length.
 constexpr double hugging_bonus = 1.05;
+/// A closed line comes before open ones up to twice as long: these wind onto it, along the whole of it but for a gap.
+constexpr double closed_bonus = 2;
 /// Seeds of hugging lines lie this far outside the band that they hug, in separation distances.
 constexpr double hugging_gap = 1e-6;
 /// Rings of triangles beside a trajectory of the pool that need no other. The fewer lines there will be, the more it
@@ -28,14 +34,15 @@ constexpr double least_gap = 4 * least_position;
 
 class LongestFirst {
  public:
-  LongestFirst(const SurfaceMesh& mesh, const StreamlineTracer& tracer, double minimum_length,
+  LongestFirst(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const LineRules& rules,
                ChordOccupancy& occupancy, const std::function<void(const PlacedLine&)>& place)
       : mesh_(mesh),
         tracer_(tracer),
         sheet_(tracer.sheet()),
         crossings_(sheet_.crossings),
         separation_(tracer.options().separation_distances.empty() ? tracer.options().separation_distance : 0),
-        minimum_length_(minimum_length),
+        minimum_length_(rules.minimum_length),
+        close_loops_(rules.close_loops),
         occupancy_(occupancy),
         place_(place),
         hugged_(crossings_.size(), 0) {}
@@ -69,7 +76,9 @@ class LongestFirst {
       triangle = way_out.triangle;
       const auto& crossings = crossings_[triangle];
       coordinate = chord_coordinate(crossings, way_out.role, position);
-      if (mind_others && occupancy_.stopped().contains(triangle, coordinate)) return StopReason::near_other;
+      if (mind_others && occupancy_.stopped().contains(triangle, coordinate)) {
+        return occupancy_.stop_reason(triangle, coordinate);
+      }
       if (visited_.revisit(triangle, coordinate, crossings.width, separation(triangle))) {
         return StopReason::near_itself;
       }
@@ -85,7 +94,7 @@ class LongestFirst {
   }
 
   /// Traces both ways from a chord and stores the trajectory as a candidate.
-  const Trajectory& add_trajectory(std::int32_t triangle, double coordinate, bool mind_others, double bonus) {
+  Trajectory add_trajectory(std::int32_t triangle, double coordinate, bool mind_others, double bonus) {
     const auto& crossings = crossings_[triangle];
     const Chord start = make_chord(triangle, coordinate, true);
     visited_.start(crossings_.size());
@@ -102,7 +111,35 @@ class LongestFirst {
     trajectory.stretch.last = std::ssize(chords_);
     trajectories_.push_back(trajectory);
     push(trajectory.stretch, static_cast<std::int32_t>(trajectories_.size()) - 1);
-    return trajectories_.back();
+    if (close_loops_) add_closed(trajectory);
+    return trajectory;
+  }
+
+  /// Stores the closed curves that a trajectory winds onto.
+  void add_closed(const Trajectory& trajectory) {
+    const auto [first, last] = trajectory.stretch;
+    const Chord backwards{chords_[first].coordinate, chords_[first].length, chords_[first].code ^ 1};
+    const Chord starts[] = {backwards, chords_[last - 1]};
+    for (const int end : {0, 1}) {
+      if (trajectory.ends[end] != StopReason::near_itself) continue;
+      for (const auto& orbit : closed_orbits(sheet_, starts[end], last - first)) add_closed(orbit);
+    }
+  }
+
+  /// Stores a closed curve as a candidate, if it is free and not too near itself.
+  void add_closed(const Chords& orbit) {
+    if (std::ranges::any_of(orbit, [&](const Chord& chord) { return is_stopped(chord); })) return;
+    const Stretch stretch{std::ssize(chords_), std::ssize(chords_) + std::ssize(orbit)};
+    chords_.insert(chords_.end(), orbit.begin(), orbit.end());
+    make_polyline(stretch);
+    double distance = 0;
+    for (const auto& chord : orbit) distance = std::max(distance, separation(chord.triangle()));
+    if (keeps_from_itself(polyline_.points, distance)) {
+      trajectories_.push_back({stretch, {StopReason::closed, StopReason::closed}, closed_bonus});
+      push(stretch, static_cast<std::int32_t>(trajectories_.size()) - 1);
+    } else {
+      chords_.resize(static_cast<std::size_t>(stretch.first));
+    }
   }
 
   // Candidates ------------------------------------------------------------------------------------------------------
@@ -132,26 +169,11 @@ class LongestFirst {
       if (!go_on()) return false;
       const auto stretch = add_trajectory(t, 0.5, false, 1).stretch;
       const int rings = separation(t) > sparse_separation * edge ? rings_of_dense_pool : usual_rings;
-      serve(stretch, rings, served);
+      std::vector<std::int32_t> crossed;
+      for (auto i = stretch.first; i < stretch.last; ++i) crossed.push_back(chords_[i].triangle());
+      mark_rings(crossings_, std::move(crossed), rings, served);
     }
     return true;
-  }
-
-  /// Marks the triangles of a stretch and those up to `rings` triangles away.
-  void serve(const Stretch& stretch, int rings, std::vector<bool>& served) const {
-    std::vector<std::int32_t> front, next;
-    for (auto i = stretch.first; i < stretch.last; ++i) front.push_back(chords_[i].triangle());
-    for (const auto t : front) served[t] = true;
-    for (int ring = 0; ring < rings; ++ring, front.swap(next)) {
-      next.clear();
-      for (const auto t : front) {
-        for (const auto other : crossings_[t].neighbours) {
-          if (other < 0 || served[other]) continue;
-          served[other] = true;
-          next.push_back(other);
-        }
-      }
-    }
   }
 
   /// Candidates that lie just outside the band of the streamline placed last.
@@ -180,7 +202,9 @@ class LongestFirst {
       for (const auto& gap : occupancy_.unseeded().gaps(t)) {
         if (gap.high - gap.low < least_gap) continue;
         if (!go_on()) return true;  // the heap says so too
-        if (length(add_trajectory(t, (gap.low + gap.high) / 2, true, 1).stretch) < minimum_length_) {
+        const auto before = heap_.size();
+        add_trajectory(t, (gap.low + gap.high) / 2, true, 1);
+        if (heap_.size() == before) {
           occupancy_.retire_seed(t, gap);
         } else {
           any = true;
@@ -199,7 +223,9 @@ class LongestFirst {
       const auto piece = heap_.top();
       heap_.pop();
       if (!heap_.empty()) prefetch(heap_.top().stretch);
-      if (const auto best = longest_free(piece)) {
+      if (close_loops_ && is_closed(piece.trajectory)) {
+        place_closed(piece);
+      } else if (const auto best = longest_free(piece)) {
         const auto& [stretch, length] = *best;
         if (is_still_first(length, piece.trajectory)) {
           place_best(stretch, piece.trajectory);
@@ -218,6 +244,8 @@ class LongestFirst {
       __builtin_prefetch(&chords_[i]);
     }
   }
+
+  bool is_closed(std::int32_t trajectory) const { return trajectories_[trajectory].ends[0] == StopReason::closed; }
 
   bool is_still_first(double now, std::int32_t trajectory) const {
     return now >= minimum_length_ && (heap_.empty() || now * trajectories_[trajectory].bonus >= heap_.top().key);
@@ -278,7 +306,25 @@ class LongestFirst {
       }
       make_polyline(part);
     }
-    const auto line = make_line(part, trajectory);  // while what stops it is not yet in its own neighbourhood
+    place_polyline(part, trajectory);
+  }
+
+  /// Places a closed line if all of it is still free.
+  void place_closed(const Piece& piece) {
+    bool can_start = false;
+    for (auto i = piece.stretch.first; i < piece.stretch.last; ++i) {
+      if (is_stopped(chords_[i])) return;
+      can_start = can_start || !is_unseeded(chords_[i]);
+    }
+    if (!can_start) return;
+    make_polyline(piece.stretch);
+    place_polyline(piece.stretch, piece.trajectory);
+  }
+
+  /// Places the stretch whose polyline is at hand.
+  void place_polyline(const Stretch& stretch, std::int32_t trajectory) {
+    if (is_closed(trajectory)) polyline_.points.back() = polyline_.points.front();
+    const auto line = make_line(stretch, trajectory);  // while what stops it is not yet in its own neighbourhood
     occupancy_.add(polyline_);
     place_(line);
     ++placed_count_;
@@ -291,31 +337,11 @@ class LongestFirst {
     polyline_.chords.clear();
     for (auto i = stretch.first; i < stretch.last; ++i) {
       const auto& chord = chords_[i];
-      if (i == stretch.first) polyline_.points.push_back(point_on(chord, entry_side(chord)));
-      polyline_.points.push_back(point_on(chord, exit_side(chord)));
+      if (i == stretch.first) polyline_.points.push_back(point_on(sheet_, chord, entry_side(sheet_, chord)));
+      polyline_.points.push_back(point_on(sheet_, chord, exit_side(sheet_, chord)));
       polyline_.triangles.push_back(chord.triangle());
       polyline_.chords.push_back(chord.coordinate);
     }
-  }
-
-  Vector point_on(const Chord& chord, Role side) const {
-    return sheet_.point(chord.triangle(), side, chord.coordinate);
-  }
-  Role short_side(const Chord& chord) const {
-    return exit_role(crossings_[chord.triangle()], low_high, chord.coordinate);
-  }
-  Role exit_side(const Chord& chord) const { return chord.leaves_through_low_high() ? low_high : short_side(chord); }
-  Role entry_side(const Chord& chord) const { return chord.leaves_through_low_high() ? short_side(chord) : low_high; }
-
-  /// Weights of the corners of the chord's mesh triangle at its end on a side.
-  Vec3 barycentric(const Chord& chord, Role side) const {
-    const auto& crossings = crossings_[chord.triangle()];
-    const double along = side_position(crossings, side, chord.coordinate);
-    const int middle = crossings.middle, low = (middle + 1) % 3, high = (middle + 2) % 3;
-    Vec3 weights{0, 0, 0};
-    weights[side == middle_high ? middle : low] = 1 - along;
-    weights[side == low_middle ? middle : high] = along;
-    return weights;
   }
 
   /// The streamline of the stretch whose polyline is at hand.
@@ -324,16 +350,16 @@ class LongestFirst {
     line.points = polyline_.points;
     for (auto i = stretch.first; i < stretch.last; ++i) {
       line.triangles.push_back(sheet_.mesh_triangles[chords_[i].triangle()]);
-      line.barycentric.push_back(barycentric(chords_[i], entry_side(chords_[i])));
     }
-    const auto& last = chords_[stretch.last - 1];
-    line.barycentric.push_back(barycentric(last, exit_side(last)));
+    line.barycentric =
+        weights_along(sheet_, {chords_.data() + stretch.first, chords_.data() + stretch.last}, is_closed(trajectory));
     for (std::size_t i = 1; i < polyline_.points.size(); ++i) {
       line.length += (polyline_.points[i] - polyline_.points[i - 1]).norm();
     }
     const auto& whole = trajectories_[trajectory];
     const auto reason_at = [&](std::int64_t outside) {
-      return is_stopped(chords_[outside]) ? StopReason::near_other : StopReason::near_itself;
+      const auto& chord = chords_[outside];
+      return is_stopped(chord) ? occupancy_.stop_reason(chord.triangle(), chord.coordinate) : StopReason::near_itself;
     };
     line.stop_reasons[0] = stretch.first == whole.stretch.first ? whole.ends[0] : reason_at(stretch.first - 1);
     line.stop_reasons[1] = stretch.last == whole.stretch.last ? whole.ends[1] : reason_at(stretch.last);
@@ -346,6 +372,7 @@ class LongestFirst {
   const LargeArray<TriangleCrossings>& crossings_;
   double separation_;  // 0 where it varies
   double minimum_length_;
+  bool close_loops_;
   ChordOccupancy& occupancy_;
   const std::function<void(const PlacedLine&)>& place_;
 
@@ -363,10 +390,10 @@ class LongestFirst {
 
 }  // namespace
 
-bool place_longest_first(const SurfaceMesh& mesh, const StreamlineTracer& tracer, double minimum_length,
+bool place_longest_first(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const LineRules& rules,
                          ChordOccupancy& occupancy, const std::function<void(const PlacedLine&)>& place,
                          const std::function<bool()>& go_on) {
-  return LongestFirst(mesh, tracer, minimum_length, occupancy, place).run(go_on);
+  return LongestFirst(mesh, tracer, rules, occupancy, place).run(go_on);
 }
 
 }  // namespace pectinate::detail

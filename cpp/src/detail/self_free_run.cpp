@@ -75,14 +75,20 @@ class BallTree {
   std::vector<std::vector<Ball>> levels_;
 };
 
+/// The length of a polyline up to each point.
+std::vector<double> arc_lengths(const std::vector<Vector>& points) {
+  std::vector<double> arc{0};
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+    arc.push_back(arc.back() + (points[i + 1] - points[i]).norm());
+  }
+  return arc;
+}
+
 }  // namespace
 
 SegmentRun longest_self_free_run(const std::vector<Vector>& points, double distance, double arc_gap) {
   const auto count = points.size() - 1;
-  std::vector<double> arc{0};
-  for (std::size_t i = 0; i < count; ++i) {
-    arc.push_back(arc.back() + (points[i + 1] - points[i]).norm());
-  }
+  const auto arc = arc_lengths(points);
   if (arc.back() <= arc_gap) return {0, count};
 
   const auto are_near = [&](std::size_t i, std::size_t j) {
@@ -115,6 +121,25 @@ SegmentRun longest_self_free_run(const std::vector<Vector>& points, double dista
     }
   }
   return best;
+}
+
+bool is_self_free_loop(const std::vector<Vector>& points, double distance, double arc_gap) {
+  const auto count = points.size() - 1;
+  const auto arc = arc_lengths(points);
+  const BallTree tree(points);
+  bool is_free = true;
+  for (std::size_t leaf = 0; leaf * BallTree::branching < count && is_free; ++leaf) {
+    const auto begin = leaf * BallTree::branching, end = std::min(begin + BallTree::branching, count);
+    tree.visit_near(leaf, distance, [&](std::size_t from, std::size_t to) {
+      for (auto j = begin; j < end && is_free; ++j) {
+        for (auto i = from; i < std::min(to, j) && is_free; ++i) {
+          if (arc[j] - arc[i + 1] <= arc_gap || arc.back() - arc[j + 1] + arc[i] <= arc_gap) continue;
+          is_free = segment_distance(points[i], points[i + 1], points[j], points[j + 1]) >= distance;
+        }
+      }
+    });
+  }
+  return is_free;
 }
 
 }  // namespace pectinate::detail
