@@ -54,7 +54,9 @@ double tube_radius(const TubeOptions& options, double arc, double length) {
 }
 
 bool is_closed(const Placement& placement, std::size_t i) {
-  return placement.stop_reasons[i][0] == StopReason::closed;
+  constexpr int fewest_sides = 3;
+  const auto first = placement.offsets[i], last = placement.offsets[i + 1] - 1;
+  return last - first >= fewest_sides && placement.points[first] == placement.points[last];
 }
 
 /// The points of streamline `i` with the normals of the surface beside them.

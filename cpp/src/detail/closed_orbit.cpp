@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
+#include <unordered_map>
 #include <utility>
 
 #include "detail/crossings.hpp"
@@ -12,12 +14,18 @@
 namespace pectinate::detail {
 namespace {
 
-/// A curve that comes back this near to where it was is closed; in chord coordinates.
-constexpr double closing_tolerance = 1e-9;
+/// A curve that comes back this near to where it was is closed; in lengths of it. Where the field runs along the sides
+/// of triangles, orientations are turned away from them by half as much.
+constexpr double closing_tolerance = 2e-9;
 /// Newton's method on a piecewise affine map needs few steps or none helps.
 constexpr int most_corrections = 8;
-/// How much farther a curve that came near itself is followed.
-constexpr std::int64_t most_turns = 16;
+/// A curve that came near itself is followed so many times as far, and so often from where it might close.
+constexpr std::int64_t walk_length = 2;
+constexpr int most_walks = 16;
+/// Chords of a triangle that near may be one, whatever their fixed point.
+constexpr double close_coordinates = 1e-6;
+/// What might close beyond a corner of the triangle is looked for from here, where it may pass into the next one.
+constexpr double nearest_to_corner = 0.02;
 /// In separation distances: up to this length no two points are more than twice that apart along a closed line, and
 /// nothing would keep its sides from each other.
 constexpr double least_length = 4;
@@ -63,83 +71,118 @@ class Walk {
   double coordinate_, slope_ = 1;
 };
 
-/// Coming back to the first triangle in the same sense.
+/// Coming back to a triangle in the same sense.
 struct Return {
-  int count;           ///< how often it was come back to
-  std::int64_t steps;  ///< triangles crossed since
-  double coordinate, slope;
+  Chord from;
+  std::int64_t steps;  ///< triangles crossed in between
+  double coordinate;
+  double slope;  ///< by how much it changes with the coordinate there
+
+  /// Where a curve along the same strip would close, as a coordinate of the triangle or beyond it.
+  double fixed_point() const { return from.coordinate + (coordinate - from.coordinate) / (1 - slope); }
 };
 
-/// A closed curve through a chord, or how it comes back.
+bool is_inside(double coordinate) {
+  return coordinate > least_position && coordinate < 1 - least_position;
+}
+
+/// A closed curve through a chord, or else how it comes back.
 struct Round {
   Chords chords;  ///< empty if it is not closed
   std::optional<Return> result;
 };
 
-/// As far as the return with the same number as that expected.
-Round go_round(const Sheet& sheet, const Chord& start, const Return& expected) {
+Round go_round(const Sheet& sheet, const Chord& start, std::int64_t most_steps) {
   Round round;
   Walk walk(sheet, start);
-  int count = 0;
-  for (std::int64_t step = 1; step <= 2 * expected.steps; ++step) {
+  double length = 0;
+  for (std::int64_t step = 1; step <= most_steps; ++step) {
     round.chords.push_back(walk.chord());
+    length += round.chords.back().length;
     if (!walk.advance()) break;
     const auto chord = walk.chord();
     if (chord.code != start.code) continue;
-    ++count;
-    round.result = Return{count, step, chord.coordinate, walk.slope()};
-    if (std::abs(chord.coordinate - start.coordinate) <= closing_tolerance) return round;
-    if (count == expected.count) break;
+    const double gap = std::abs(chord.coordinate - start.coordinate) * sheet.crossings[start.triangle()].width;
+    if (gap <= closing_tolerance * length) return round;
+    round.result = Return{start, step, chord.coordinate, walk.slope()};
+    break;
   }
   round.chords.clear();
-  if (count != expected.count) round.result.reset();
   return round;
 }
 
 /// The closed curve near a chord that comes back, if there is one.
-Chords converge(const Sheet& sheet, Chord start, Return last) {
+Chords converge(const Sheet& sheet, const Return& first) {
+  auto result = first;
   for (int i = 0; i < most_corrections; ++i) {
-    const double shift = last.coordinate - start.coordinate;
-    if (std::abs(shift) > closing_tolerance) start.coordinate += shift / (1 - last.slope);
-    if (!(start.coordinate > least_position && start.coordinate < 1 - least_position)) return {};
-    auto round = go_round(sheet, start, last);
+    auto start = result.from;
+    if (i > 0) start.coordinate = result.fixed_point();
+    if (!is_inside(start.coordinate)) break;
+    auto round = go_round(sheet, start, 2 * first.steps);
     if (!round.chords.empty() || !round.result) return std::move(round.chords);
-    last = *round.result;
+    result = *round.result;
   }
   return {};
 }
 
+/// A walk that tells all its returns.
+struct Search {
+  Chords orbit;        ///< that it came upon, if any
+  Chord nearest_goal;  ///< the chord nearest to where a strip would close, or else where the walk ended
+};
+
+Search search(const Sheet& sheet, const Chord& start, std::int64_t most_steps) {
+  struct Visit {
+    Chord chord;
+    double slope;
+    std::int64_t step;
+  };
+  std::unordered_map<std::int32_t, Visit> visits;
+  Walk walk(sheet, start);
+  Search search{{}, start};
+  double least = std::numeric_limits<double>::infinity();
+  for (std::int64_t step = 0; step < most_steps; ++step) {
+    const auto chord = walk.chord();
+    const auto [place, is_new] = visits.try_emplace(chord.code, Visit{chord, walk.slope(), step});
+    if (!is_new) {
+      const auto [from, slope, since] = std::exchange(place->second, {chord, walk.slope(), step});
+      const Return back{from, step - since, chord.coordinate, walk.slope() / slope};
+      const double goal = back.fixed_point();
+      if (is_inside(goal) || std::abs(back.coordinate - from.coordinate) < close_coordinates) {
+        search.orbit = converge(sheet, back);
+        if (!search.orbit.empty()) return search;
+      }
+      const double way = std::abs(goal - from.coordinate) * sheet.crossings[from.triangle()].width;
+      if (way < least) {
+        least = way;
+        search.nearest_goal = from;
+        search.nearest_goal.coordinate = std::clamp(goal, nearest_to_corner, 1 - nearest_to_corner);
+      }
+    }
+    if (!walk.advance()) return search;
+  }
+  if (std::isinf(least)) search.nearest_goal = walk.chord();
+  return search;
+}
+
+/// Lets a closed curve begin behind its longest chord: what rounding leaves open is then least to be seen.
+Chords begun_anew(const Sheet& sheet, Chords orbit) {
+  const auto longest = std::ranges::max_element(orbit, {}, &Chord::length) - orbit.begin();
+  const auto start = orbit[(longest + 1) % std::ssize(orbit)];
+  auto round = go_round(sheet, start, std::ssize(orbit));
+  return round.chords.empty() ? std::move(orbit) : std::move(round.chords);
+}
+
 }  // namespace
 
-std::vector<Chords> closed_orbits(const Sheet& sheet, const Chord& start, std::int64_t triangle_count) {
-  std::vector<Chords> orbits;
-  // As the curve gets nearer to the one that it ends on, it is compared with where it was later and later.
-  Chord anchor = start;
-  Walk walk(sheet, anchor);
-  Return last{0, 0, 0, 0};
-  for (std::int64_t step = 0, patience = 2 * triangle_count; step < most_turns * triangle_count; ++step) {
-    if (!walk.advance()) break;
-    ++last.steps;
-    const auto chord = walk.chord();
-    if (chord.code == anchor.code) {
-      last = {last.count + 1, last.steps, chord.coordinate, walk.slope()};
-      auto orbit = converge(sheet, anchor, last);
-      const bool is_found = !orbit.empty();
-      if (is_found && (orbits.empty() || orbit.size() != orbits.back().size())) orbits.push_back(std::move(orbit));
-      if (is_found && (last.slope > 0 || last.count > 1)) break;
-    } else if (last.steps >= patience && orbits.empty()) {
-      anchor = chord;
-      walk = Walk(sheet, anchor);
-      last = {0, 0, 0, 0};
-      patience *= 2;
-    }
+Chords closed_orbit(const Sheet& sheet, const Chord& start, std::int64_t triangle_count) {
+  auto from = start;
+  for (int i = 0; i < most_walks; ++i) {
+    auto found = search(sheet, from, walk_length * triangle_count);
+    if (!found.orbit.empty()) return begun_anew(sheet, std::move(found.orbit));
+    from = found.nearest_goal;
   }
-  // What rounding leaves open is then least to be seen.
-  for (auto& orbit : orbits) {
-    const auto longest = std::ranges::max_element(orbit, {}, &Chord::length);
-    std::rotate(orbit.begin(), longest + 1, orbit.end());
-  }
-  return orbits;
+  return {};
 }
 
 bool keeps_from_itself(const std::vector<Vector>& points, double distance) {

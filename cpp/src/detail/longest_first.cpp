@@ -122,20 +122,20 @@ class LongestFirst {
     const Chord starts[] = {backwards, chords_[last - 1]};
     for (const int end : {0, 1}) {
       if (trajectory.ends[end] != StopReason::near_itself) continue;
-      for (const auto& orbit : closed_orbits(sheet_, starts[end], last - first)) add_closed(orbit);
+      add_closed(closed_orbit(sheet_, starts[end], last - first), trajectory.bonus);
     }
   }
 
   /// Stores a closed curve as a candidate, if it is free and not too near itself.
-  void add_closed(const Chords& orbit) {
-    if (std::ranges::any_of(orbit, [&](const Chord& chord) { return is_stopped(chord); })) return;
+  void add_closed(const Chords& orbit, double bonus) {
+    if (orbit.empty() || std::ranges::any_of(orbit, [&](const Chord& chord) { return is_stopped(chord); })) return;
     const Stretch stretch{std::ssize(chords_), std::ssize(chords_) + std::ssize(orbit)};
     chords_.insert(chords_.end(), orbit.begin(), orbit.end());
     make_polyline(stretch);
     double distance = 0;
     for (const auto& chord : orbit) distance = std::max(distance, separation(chord.triangle()));
     if (keeps_from_itself(polyline_.points, distance)) {
-      trajectories_.push_back({stretch, {StopReason::closed, StopReason::closed}, closed_bonus});
+      trajectories_.push_back({stretch, {StopReason::closed, StopReason::closed}, closed_bonus * bonus});
       push(stretch, static_cast<std::int32_t>(trajectories_.size()) - 1);
     } else {
       chords_.resize(static_cast<std::size_t>(stretch.first));

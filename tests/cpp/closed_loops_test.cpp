@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "hard_fields.hpp"
+#include "pectinate/tubes.hpp"
+#include "placement_checks.hpp"
+
+namespace pectinate::test {
+namespace {
+
+using detail::Vector;
+using detail::vector;
+using std::numbers::pi;
+
+PlacementOptions closing(double separation) {
+  PlacementOptions options;
+  options.separation_distance = separation;
+  options.close_loops = true;
+  return options;
+}
+
+/// Round the z axis, and away from it by so much as the function of the distance from it says.
+template <class Function>
+OrientationField swirl(const SurfaceMesh& mesh, const Function& outwards) {
+  return field_of(mesh, [&](const Vector& c, const Vector&) {
+    const Vector away = Vector(c.x(), c.y(), 0).normalized();
+    return Vector(Vector(-away.y(), away.x(), 0) + outwards(std::hypot(c.x(), c.y())) * away);
+  });
+}
+
+/// Closed lines end where they begin, bit for bit, and are long enough; others do not say that they are closed.
+Placement check_closed(const SurfaceMesh& mesh, const OrientationField& field, const PlacementOptions& options) {
+  auto placement = checked(mesh, field, options);
+  for (std::size_t i = 0; i < placement.lengths.size(); ++i) {
+    const auto &first = placement.points[placement.offsets[i]], &last = placement.points[placement.offsets[i + 1] - 1];
+    CHECK(is_closed(placement, i) == (first == last));
+    CHECK(is_closed(placement, i) == (placement.stop_reasons[i][1] == StopReason::closed));
+    if (is_closed(placement, i)) CHECK(placement.lengths[i] >= 4 * options.separation_distance * (1 - 1e-6));
+  }
+  check_segment_separation(placement, options.separation_distance);
+  check_self_separation(placement, options.separation_distance);
+  return placement;
+}
+
+std::int64_t closed_count(const Placement& placement) {
+  return stop_count(placement, StopReason::closed) / 2;
+}
+
+Vector mean_of(const Tubes& tubes, std::int64_t first, int count) {
+  Vector sum = Vector::Zero();
+  for (int k = 0; k < count; ++k) sum += vector(tubes.vertices[first + k]);
+  return sum / count;
+}
+
+/// Tubes of closed lines are rings, as thick everywhere, that turn little from one station to the next.
+void check_ring(const Tubes& tubes, std::size_t i, const TubeOptions& options) {
+  const auto first = tubes.vertex_offsets[i], last = tubes.vertex_offsets[i + 1];
+  const auto sides = tubes.triangle_offsets[i + 1] - tubes.triangle_offsets[i];
+  CHECK(sides == 2 * (last - first));  // Euler characteristic 0, if watertight: 3/2 edges a triangle
+  std::vector<std::pair<std::int32_t, std::int32_t>> edges;
+  for (auto t = tubes.triangle_offsets[i]; t < tubes.triangle_offsets[i + 1]; ++t) {
+    const auto& corners = tubes.triangles[t];
+    for (int k = 0; k < 3; ++k) edges.emplace_back(corners[k], corners[(k + 1) % 3]);
+  }
+  std::sort(edges.begin(), edges.end());
+  CHECK(std::adjacent_find(edges.begin(), edges.end()) == edges.end());
+  for (const auto& [from, to] : edges) CHECK(std::binary_search(edges.begin(), edges.end(), std::pair{to, from}));
+
+  const int n = options.side_count;
+  const auto count = (last - first) / n;
+  for (std::int64_t ring = 0; ring < count; ++ring) {
+    const auto here = first + n * ring, next = first + n * ((ring + 1) % count);
+    const Vector centre_here = mean_of(tubes, here, n), centre_next = mean_of(tubes, next, n);
+    for (int k = 0; k < n; ++k) {
+      const Vector from = vector(tubes.vertices[here + k]) - centre_here;
+      const Vector to = vector(tubes.vertices[next + k]) - centre_next;
+      CHECK(from.norm() == doctest::Approx(options.radius).epsilon(1e-9));
+      CHECK((to - from).norm() < 0.7 * options.radius);
+    }
+  }
+}
+
+void check_rings(const SurfaceMesh& mesh, const Placement& placement) {
+  for (const TubeOptions options : {TubeOptions{0.05, 1, 8}, {0.01, 0, 3}}) {
+    const auto tubes = make_tubes(mesh, placement, options);
+    for (std::size_t i = 0; i < placement.lengths.size(); ++i) {
+      if (is_closed(placement, i)) check_ring(tubes, i, options);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("closed loops: round a cylinder every line closes, as long as its polygon") {
+  const int around = 24;
+  const auto mesh = cylinder(around, 15, 2, 6).mesh();
+  const auto field = swirl(mesh, [](double) { return 0.0; });
+  const double circumference = around * 2 * 2 * std::sin(pi / around);
+  for (const double separation : {0.3, 0.45, 1.4}) {
+    const auto placement = check_closed(mesh, field, closing(separation));
+    CHECK(closed_count(placement) == placement.statistics.streamline_count);
+    CHECK(placement.statistics.streamline_count >= std::floor(6 / separation) - 1);
+    for (const double length : placement.lengths) CHECK(length == doctest::Approx(circumference).epsilon(1e-9));
+    for (const auto& segment : segments_of(placement)) CHECK(std::abs(segment.start.z() - segment.end.z()) < 3e-8);
+    check_complete(mesh, field, placement, separation);
+    check_rings(mesh, placement);
+  }
+  // From 4 d_sep on a ring is a streamline.
+  CHECK(closed_count(check_closed(mesh, field, closing(circumference / 4.001))) > 0);
+  CHECK(closed_count(check_closed(mesh, field, closing(circumference / 3.999))) == 0);
+  auto options = closing(0.45);
+  options.minimum_length = circumference - 0.01;
+  CHECK(closed_count(check_closed(mesh, field, options)) >= 12);
+  options.minimum_length = circumference + 0.01;
+  CHECK(place_streamlines(mesh, field, options).lengths.empty());
+  options = closing(0.45);
+  options.close_loops = false;
+  CHECK(closed_count(check_closed(mesh, field, options)) == 0);
+}
+
+TEST_CASE("closed loops: spirals and helices do not close") {
+  const auto flat = annulus(48, 20, 1, 3).mesh();
+  for (const double pitch : {0.02, 0.06, -0.2}) {
+    const auto placement = check_closed(flat, swirl(flat, [=](double r) { return pitch * r; }), closing(0.2));
+    CHECK(closed_count(placement) == 0);
+    CHECK(placement.statistics.coverage > 1 - 1e-6);
+  }
+  const auto mesh = cylinder(24, 15, 2, 6).mesh();
+  for (const double rise : {0.001, 0.05}) {
+    const auto helix = field_of(mesh, [=](const Vector& c, const Vector&) {
+      return Vector(Vector(-c.y(), c.x(), 0).normalized() + Vector(0, 0, rise));
+    });
+    CHECK(closed_count(check_closed(mesh, helix, closing(0.3))) == 0);
+  }
+}
+
+TEST_CASE("closed loops: a limit cycle is found where it is, from within and from without") {
+  const auto mesh = annulus(64, 24, 1, 3).mesh();
+  for (const double attraction : {0.3, 1.0, -0.3, -1.0}) {
+    CAPTURE(attraction);
+    for (const double radius : {1.6, 2.3}) {
+      const auto field = swirl(mesh, [=](double r) { return attraction * (radius - r); });
+      const auto placement = check_closed(mesh, field, closing(0.3));
+      CHECK(closed_count(placement) == 1);
+      for (std::size_t i = 0; i < placement.lengths.size(); ++i) {
+        if (!is_closed(placement, i)) continue;
+        CHECK(placement.lengths[i] == doctest::Approx(2 * pi * radius).epsilon(0.01));
+        for (auto p = placement.offsets[i]; p < placement.offsets[i + 1]; ++p) {
+          CHECK(std::abs(vector(placement.points[p]).norm() - radius) < 0.03);
+        }
+      }
+      check_complete(mesh, field, placement, 0.3);
+      check_rings(mesh, placement);
+    }
+  }
+}
+
+TEST_CASE("closed loops: the core of a Moebius strip closes, and its tube too") {
+  const auto mesh = moebius_strip(60, 7).mesh();
+  const auto field = swirl(mesh, [](double) { return 0.0; });
+  const auto core = check_closed(mesh, field, closing(1.5));
+  REQUIRE(closed_count(core) == 1);
+  const auto line = std::find_if(core.stop_reasons.begin(), core.stop_reasons.end(),
+                                 [](const auto& ends) { return ends[0] == StopReason::closed; });
+  CHECK(core.lengths[line - core.stop_reasons.begin()] == doctest::Approx(4 * pi).epsilon(0.01));
+  check_rings(mesh, core);
+  const auto dense = check_closed(mesh, field, closing(0.2));
+  CHECK(closed_count(dense) > 0);
+  check_rings(mesh, dense);
+}
+
+TEST_CASE("closed loops: whatever the field, lines keep apart and fill the surface") {
+  const auto mesh = jittered_grid(12, 9).mesh();
+  std::int64_t closed = 0;
+  for (const auto& hard : hard_fields) {
+    CAPTURE(hard.name);
+    const auto field = make_field(mesh, hard);
+    for (const double separation : {0.05, 0.31, 1.0}) {
+      for (const double clearance : {1.0, 1.11}) {
+        auto options = closing(separation);
+        options.seed_clearance = clearance;
+        const auto placement = check_closed(mesh, field, options);
+        check_complete(mesh, field, placement, clearance * separation, 10);
+        closed += closed_count(placement);
+      }
+    }
+  }
+  CHECK(closed > 10);
+}
+
+TEST_CASE("closed loops: they do not depend on signs, and move with the surface") {
+  const auto soup = annulus(48, 16, 1, 3);
+  const auto mesh = soup.mesh();
+  const auto outwards = [](double r) { return 0.1 * std::sin(5 * r); };
+  const auto field = swirl(mesh, outwards);
+  const auto placement = check_closed(mesh, field, closing(0.2));
+  REQUIRE(closed_count(placement) >= 2);
+  Random random(5);
+  const auto reversed = field_of(mesh, [&](const Vector& c, const Vector&) {
+    const Vector away = c.normalized();
+    const Vector along = Vector(-away.y(), away.x(), 0) + outwards(c.norm()) * away;
+    return Vector(random.unit() < 0.5 ? along : Vector(-along));
+  });
+  CHECK(same_bytes(place_streamlines(mesh, reversed, closing(0.2)), placement));
+
+  const Vector offset(3, -5, 2);
+  const auto moved_mesh = mapped(soup, [&](const Vector& v) { return Vector(some_rotation() * v + offset); }).mesh();
+  const auto moved_field = field_of(moved_mesh, [&](const Vector& c, const Vector&) {
+    const Vector at = some_rotation().transpose() * (c - offset), away = at.normalized();
+    return Vector(some_rotation() * (Vector(-away.y(), away.x(), 0) + outwards(at.norm()) * away));
+  });
+  const auto moved_placement = place_streamlines(moved_mesh, moved_field, closing(0.2));
+  REQUIRE(moved_placement.offsets == placement.offsets);
+  CHECK(moved_placement.stop_reasons == placement.stop_reasons);
+  for (std::size_t p = 0; p < placement.points.size(); ++p) {
+    const Vector expected = some_rotation() * vector(placement.points[p]) + offset;
+    CHECK((vector(moved_placement.points[p]) - expected).norm() < 1e-6);
+  }
+}
+
+}  // namespace pectinate::test
