@@ -123,8 +123,9 @@ TEST_CASE("stop reasons: streamlines stop about singularities, whatever the meth
         const auto placement = checked(mesh, field, options);
         check_singular_ends(mesh, field, placement);
         check_segment_separation(placement, 0.4);
+        // Of a wedge or a trisector only the lines of measure zero run into the point, but a disc about it is met.
         const bool is_vortex = half_turns == 2 && start > 0;
-        if (!is_vortex) CHECK(stop_count(placement, StopReason::singularity) > 0);
+        if (!is_vortex && (half_turns == 2 || radius > 1)) CHECK(stop_count(placement, StopReason::singularity) > 0);
         CHECK(placement.statistics.coverage > 1 - 1e-6);
       }
       options.singularity_radius = 0;

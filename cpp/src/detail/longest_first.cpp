@@ -19,8 +19,9 @@ namespace {
 
 /// Prefers lines that hug a placed one to others of about the same length.
 constexpr double hugging_bonus = 1.05;
-/// A closed line comes before open ones up to twice as long: these wind onto it, along the whole of it but for a gap.
-constexpr double closed_bonus = 2;
+/// Closed lines come before all open ones: one that winds onto a closed curve would take its place, whatever its
+/// length.
+constexpr double closed_bonus = 1e6;
 /// Seeds of hugging lines lie this far outside the band that they hug, in separation distances.
 constexpr double hugging_gap = 1e-6;
 /// Rings of triangles beside a trajectory of the pool that need no other. The fewer lines there will be, the more it
