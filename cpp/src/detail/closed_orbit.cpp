@@ -22,6 +22,8 @@ constexpr int most_corrections = 8;
 /// A curve that came near itself is followed so many times as far, and so often from where it might close.
 constexpr std::int64_t walk_length = 2;
 constexpr int most_walks = 16;
+/// Of the returns on a walk so many are tried, each nearer to its fixed point than those before.
+constexpr int most_attempts = 8;
 /// Chords of a triangle that near may be one, whatever their fixed point.
 constexpr double close_coordinates = 1e-6;
 /// What might close beyond a corner of the triangle is looked for from here, where it may pass into the next one.
@@ -129,6 +131,7 @@ Chords converge(const Sheet& sheet, const Return& first) {
 struct Search {
   Chords orbit;        ///< that it came upon, if any
   Chord nearest_goal;  ///< the chord nearest to where a strip would close, or else where the walk ended
+  double way = std::numeric_limits<double>::infinity();  ///< to there from the walk, if a strip would
 };
 
 Search search(const Sheet& sheet, const Chord& start, std::int64_t most_steps) {
@@ -140,7 +143,7 @@ Search search(const Sheet& sheet, const Chord& start, std::int64_t most_steps) {
   std::unordered_map<std::int32_t, Visit> visits;
   Walk walk(sheet, start);
   Search search{{}, start};
-  double least = std::numeric_limits<double>::infinity();
+  int attempts = 0;
   for (std::int64_t step = 0; step < most_steps; ++step) {
     const auto chord = walk.chord();
     const auto [place, is_new] = visits.try_emplace(chord.code, Visit{chord, walk.slope(), step});
@@ -148,20 +151,22 @@ Search search(const Sheet& sheet, const Chord& start, std::int64_t most_steps) {
       const auto [from, slope, since] = std::exchange(place->second, {chord, walk.slope(), step});
       const Return back{from, step - since, chord.coordinate, walk.slope() / slope};
       const double goal = back.fixed_point();
-      if (is_inside(goal) || std::abs(back.coordinate - from.coordinate) < close_coordinates) {
+      const double way = std::abs(goal - from.coordinate) * sheet.crossings[from.triangle()].width;
+      const bool is_promising = way < search.way && is_inside(goal);
+      const bool is_close = std::abs(back.coordinate - from.coordinate) < close_coordinates;
+      if ((is_promising || is_close) && attempts++ < most_attempts) {
         search.orbit = converge(sheet, back);
         if (!search.orbit.empty()) return search;
       }
-      const double way = std::abs(goal - from.coordinate) * sheet.crossings[from.triangle()].width;
-      if (way < least) {
-        least = way;
+      if (way < search.way) {
+        search.way = way;
         search.nearest_goal = from;
         search.nearest_goal.coordinate = std::clamp(goal, nearest_to_corner, 1 - nearest_to_corner);
       }
     }
     if (!walk.advance()) return search;
   }
-  if (std::isinf(least)) search.nearest_goal = walk.chord();
+  if (std::isinf(search.way)) search.nearest_goal = walk.chord();
   return search;
 }
 
@@ -177,10 +182,13 @@ Chords begun_anew(const Sheet& sheet, Chords orbit) {
 
 Chords closed_orbit(const Sheet& sheet, const Chord& start, std::int64_t triangle_count) {
   auto from = start;
+  double way = std::numeric_limits<double>::infinity();
   for (int i = 0; i < most_walks; ++i) {
     auto found = search(sheet, from, walk_length * triangle_count);
     if (!found.orbit.empty()) return begun_anew(sheet, std::move(found.orbit));
+    if (found.way >= way && std::isfinite(way)) break;
     from = found.nearest_goal;
+    way = found.way;
   }
   return {};
 }
