@@ -129,8 +129,9 @@ Chords converge(const Sheet& sheet, const Return& first) {
 
 /// A walk that tells all its returns.
 struct Search {
-  Chords orbit;        ///< that it came upon, if any
-  Chord nearest_goal;  ///< the chord nearest to where a strip would close, or else where the walk ended
+  Chords orbit;  ///< that it came upon, if any
+  /// The chord nearest to where a strip would close, or else where the walk ended; none where it came to a stop.
+  std::optional<Chord> next;
   double way = std::numeric_limits<double>::infinity();  ///< to there from the walk, if a strip would
 };
 
@@ -142,7 +143,7 @@ Search search(const Sheet& sheet, const Chord& start, std::int64_t most_steps) {
   };
   std::unordered_map<std::int32_t, Visit> visits;
   Walk walk(sheet, start);
-  Search search{{}, start};
+  Search search;
   int attempts = 0;
   for (std::int64_t step = 0; step < most_steps; ++step) {
     const auto chord = walk.chord();
@@ -160,13 +161,13 @@ Search search(const Sheet& sheet, const Chord& start, std::int64_t most_steps) {
       }
       if (way < search.way) {
         search.way = way;
-        search.nearest_goal = from;
-        search.nearest_goal.coordinate = std::clamp(goal, nearest_to_corner, 1 - nearest_to_corner);
+        search.next = from;
+        search.next->coordinate = std::clamp(goal, nearest_to_corner, 1 - nearest_to_corner);
       }
     }
     if (!walk.advance()) return search;
   }
-  if (std::isinf(search.way)) search.nearest_goal = walk.chord();
+  if (!search.next) search.next = walk.chord();
   return search;
 }
 
@@ -186,8 +187,8 @@ Chords closed_orbit(const Sheet& sheet, const Chord& start, std::int64_t triangl
   for (int i = 0; i < most_walks; ++i) {
     auto found = search(sheet, from, walk_length * triangle_count);
     if (!found.orbit.empty()) return begun_anew(sheet, std::move(found.orbit));
-    if (found.way >= way && std::isfinite(way)) break;
-    from = found.nearest_goal;
+    if (!found.next || (found.way >= way && std::isfinite(way))) break;
+    from = *found.next;
     way = found.way;
   }
   return {};

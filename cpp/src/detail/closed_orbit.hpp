@@ -10,7 +10,8 @@
 namespace pectinate::detail {
 
 /// A closed curve of the field on which one winds that starts with a chord and came near itself within so many
-/// triangles; empty if none is found. It begins where it ends, within 2e-9 of its length.
+/// triangles; empty if none is found. It begins where it ends, within 2e-9 of its length, and crosses one of its
+/// triangles only once in the same sense.
 ///
 /// From a triangle along a strip of triangles back to it the chord coordinate changes affinely, s -> a s + b. The fixed
 /// point is a closed curve if it keeps to the strip, or to another one that comes back. The search goes from fixed

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <optional>
 #include <queue>
+#include <span>
 #include <utility>
 
 #include "detail/chord_sides.hpp"
@@ -119,8 +120,8 @@ class LongestFirst {
   /// Stores the closed curves that a trajectory winds onto.
   void add_closed(const Trajectory& trajectory) {
     const auto [first, last] = trajectory.stretch;
-    const Chord backwards{chords_[first].coordinate, chords_[first].length, chords_[first].code ^ 1};
-    const Chord starts[] = {backwards, chords_[last - 1]};
+    Chord starts[] = {chords_[first], chords_[last - 1]};
+    starts[0].code ^= 1;  // backwards
     for (const int end : {0, 1}) {
       if (trajectory.ends[end] != StopReason::near_itself) continue;
       add_closed(closed_orbit(sheet_, starts[end], last - first), trajectory.bonus);
@@ -144,6 +145,10 @@ class LongestFirst {
   }
 
   // Candidates ------------------------------------------------------------------------------------------------------
+
+  std::span<const Chord> chords_of(const Stretch& stretch) const {
+    return {chords_.data() + stretch.first, chords_.data() + stretch.last};
+  }
 
   double length(const Stretch& stretch) const {
     double sum = 0;
@@ -224,7 +229,7 @@ class LongestFirst {
       const auto piece = heap_.top();
       heap_.pop();
       if (!heap_.empty()) prefetch(heap_.top().stretch);
-      if (close_loops_ && is_closed(piece.trajectory)) {
+      if (close_loops_ && trajectories_[piece.trajectory].is_closed()) {
         place_closed(piece);
       } else if (const auto best = longest_free(piece)) {
         const auto& [stretch, length] = *best;
@@ -245,8 +250,6 @@ class LongestFirst {
       __builtin_prefetch(&chords_[i]);
     }
   }
-
-  bool is_closed(std::int32_t trajectory) const { return trajectories_[trajectory].ends[0] == StopReason::closed; }
 
   bool is_still_first(double now, std::int32_t trajectory) const {
     return now >= minimum_length_ && (heap_.empty() || now * trajectories_[trajectory].bonus >= heap_.top().key);
@@ -312,19 +315,16 @@ class LongestFirst {
 
   /// Places a closed line if all of it is still free.
   void place_closed(const Piece& piece) {
-    bool can_start = false;
-    for (auto i = piece.stretch.first; i < piece.stretch.last; ++i) {
-      if (is_stopped(chords_[i])) return;
-      can_start = can_start || !is_unseeded(chords_[i]);
-    }
-    if (!can_start) return;
+    const auto chords = chords_of(piece.stretch);
+    if (std::ranges::any_of(chords, [&](const Chord& chord) { return is_stopped(chord); })) return;
+    if (std::ranges::all_of(chords, [&](const Chord& chord) { return is_unseeded(chord); })) return;
     make_polyline(piece.stretch);
     place_polyline(piece.stretch, piece.trajectory);
   }
 
   /// Places the stretch whose polyline is at hand.
   void place_polyline(const Stretch& stretch, std::int32_t trajectory) {
-    if (is_closed(trajectory)) polyline_.points.back() = polyline_.points.front();
+    if (trajectories_[trajectory].is_closed()) polyline_.points.back() = polyline_.points.front();
     const auto line = make_line(stretch, trajectory);  // while what stops it is not yet in its own neighbourhood
     occupancy_.add(polyline_);
     place_(line);
@@ -352,8 +352,7 @@ class LongestFirst {
     for (auto i = stretch.first; i < stretch.last; ++i) {
       line.triangles.push_back(sheet_.mesh_triangles[chords_[i].triangle()]);
     }
-    line.barycentric =
-        weights_along(sheet_, {chords_.data() + stretch.first, chords_.data() + stretch.last}, is_closed(trajectory));
+    line.barycentric = weights_along(sheet_, chords_of(stretch), trajectories_[trajectory].is_closed());
     for (std::size_t i = 1; i < polyline_.points.size(); ++i) {
       line.length += (polyline_.points[i] - polyline_.points[i - 1]).norm();
     }
