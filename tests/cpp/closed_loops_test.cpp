@@ -62,8 +62,8 @@ Vector mean_of(const Tubes& tubes, std::int64_t first, int count) {
   return sum / count;
 }
 
-/// Tubes of closed lines are rings, as thick everywhere, that turn little from one station to the next.
-void check_ring(const Tubes& tubes, std::size_t i, const TubeOptions& options) {
+/// Tubes of closed lines are watertight rings.
+void check_topology(const Tubes& tubes, std::size_t i) {
   const auto first = tubes.vertex_offsets[i], last = tubes.vertex_offsets[i + 1];
   const auto sides = tubes.triangle_offsets[i + 1] - tubes.triangle_offsets[i];
   CHECK(sides == 2 * (last - first));  // Euler characteristic 0, if watertight: 3/2 edges a triangle
@@ -75,7 +75,12 @@ void check_ring(const Tubes& tubes, std::size_t i, const TubeOptions& options) {
   std::sort(edges.begin(), edges.end());
   CHECK(std::adjacent_find(edges.begin(), edges.end()) == edges.end());
   for (const auto& [from, to] : edges) CHECK(std::binary_search(edges.begin(), edges.end(), std::pair{to, from}));
+}
 
+/// They are as thick everywhere, and turn little from one station to the next.
+void check_ring(const Tubes& tubes, std::size_t i, const TubeOptions& options) {
+  check_topology(tubes, i);
+  const auto first = tubes.vertex_offsets[i], last = tubes.vertex_offsets[i + 1];
   const int n = options.side_count;
   const auto count = (last - first) / n;
   for (std::int64_t ring = 0; ring < count; ++ring) {
@@ -126,6 +131,33 @@ TEST_CASE("closed loops: round a cylinder every line closes, as long as its poly
   options = closing(0.45);
   options.close_loops = false;
   CHECK(closed_count(check_closed(mesh, field, options)) == 0);
+}
+
+TEST_CASE("closed loops: a tube has rings enough, however thick it is for its line") {
+  const auto mesh = grid(1, 1).mesh();
+  Placement placement;
+  placement.points = {{0.2, 0.4, 0}, {0.65, 0.45, 0}, {0.2, 0.5, 0}, {0.2, 0.4, 0}};
+  placement.segment_triangles = {0, 0, 0};
+  placement.offsets = {0, 4};
+  for (const double radius : {0.01, 0.3, 3.0}) {
+    const auto tubes = make_tubes(mesh, placement, {radius, 0, 5});
+    check_topology(tubes, 0);
+    CHECK(tubes.vertices.size() >= 3 * 5);
+  }
+}
+
+TEST_CASE("closed loops: they too begin only where the clearance for seeds is free") {
+  const auto mesh = cylinder(24, 15, 2, 6).mesh();
+  const auto field = swirl(mesh, [](double) { return 0.0; });
+  auto options = closing(1);
+  options.seed_clearance = 1.5;
+  const auto placement = check_closed(mesh, field, options);
+  CHECK(closed_count(placement) >= 3);
+  for (std::size_t i = 0; i < placement.lengths.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      CHECK(std::abs(placement.points[placement.offsets[i]][2] - placement.points[placement.offsets[j]][2]) >= 1.5);
+    }
+  }
 }
 
 TEST_CASE("closed loops: spirals and helices do not close") {

@@ -19,15 +19,12 @@ namespace {
 constexpr double closing_tolerance = 2e-9;
 /// Newton's method on a piecewise affine map needs few steps or none helps.
 constexpr int most_corrections = 8;
-/// A curve that came near itself is followed so many times as far, and so often from where it might close.
-constexpr std::int64_t walk_length = 2;
-constexpr int most_walks = 16;
-/// Of the returns on a walk so many are tried, each nearer to its fixed point than those before.
-constexpr int most_attempts = 8;
+/// A curve that came near itself is followed so many times as far.
+constexpr std::int64_t walk_length = 4;
+/// Of the returns on the way so many are tried, each nearer to its fixed point than those before.
+constexpr int most_attempts = 16;
 /// Chords of a triangle that near may be one, whatever their fixed point.
 constexpr double close_coordinates = 1e-6;
-/// What might close beyond a corner of the triangle is looked for from here, where it may pass into the next one.
-constexpr double nearest_to_corner = 0.02;
 /// In separation distances: up to this length no two points are more than twice that apart along a closed line, and
 /// nothing would keep its sides from each other.
 constexpr double least_length = 4;
@@ -127,50 +124,6 @@ Chords converge(const Sheet& sheet, const Return& first) {
   return {};
 }
 
-/// A walk that tells all its returns.
-struct Search {
-  Chords orbit;  ///< that it came upon, if any
-  /// The chord nearest to where a strip would close, or else where the walk ended; none where it came to a stop.
-  std::optional<Chord> next;
-  double way = std::numeric_limits<double>::infinity();  ///< to there from the walk, if a strip would
-};
-
-Search search(const Sheet& sheet, const Chord& start, std::int64_t most_steps) {
-  struct Visit {
-    Chord chord;
-    double slope;
-    std::int64_t step;
-  };
-  std::unordered_map<std::int32_t, Visit> visits;
-  Walk walk(sheet, start);
-  Search search;
-  int attempts = 0;
-  for (std::int64_t step = 0; step < most_steps; ++step) {
-    const auto chord = walk.chord();
-    const auto [place, is_new] = visits.try_emplace(chord.code, Visit{chord, walk.slope(), step});
-    if (!is_new) {
-      const auto [from, slope, since] = std::exchange(place->second, {chord, walk.slope(), step});
-      const Return back{from, step - since, chord.coordinate, walk.slope() / slope};
-      const double goal = back.fixed_point();
-      const double way = std::abs(goal - from.coordinate) * sheet.crossings[from.triangle()].width;
-      const bool is_promising = way < search.way && is_inside(goal);
-      const bool is_close = std::abs(back.coordinate - from.coordinate) < close_coordinates;
-      if ((is_promising || is_close) && attempts++ < most_attempts) {
-        search.orbit = converge(sheet, back);
-        if (!search.orbit.empty()) return search;
-      }
-      if (way < search.way) {
-        search.way = way;
-        search.next = from;
-        search.next->coordinate = std::clamp(goal, nearest_to_corner, 1 - nearest_to_corner);
-      }
-    }
-    if (!walk.advance()) return search;
-  }
-  if (!search.next) search.next = walk.chord();
-  return search;
-}
-
 /// Lets a closed curve begin behind its longest chord: what rounding leaves open is then least to be seen.
 Chords begun_anew(const Sheet& sheet, Chords orbit) {
   const auto longest = std::ranges::max_element(orbit, {}, &Chord::length) - orbit.begin();
@@ -182,14 +135,31 @@ Chords begun_anew(const Sheet& sheet, Chords orbit) {
 }  // namespace
 
 Chords closed_orbit(const Sheet& sheet, const Chord& start, std::int64_t triangle_count) {
-  auto from = start;
-  double way = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < most_walks; ++i) {
-    auto found = search(sheet, from, walk_length * triangle_count);
-    if (!found.orbit.empty()) return begun_anew(sheet, std::move(found.orbit));
-    if (!found.next || (found.way >= way && std::isfinite(way))) break;
-    from = *found.next;
-    way = found.way;
+  struct Visit {
+    Chord chord;
+    double slope;
+    std::int64_t step;
+  };
+  std::unordered_map<std::int32_t, Visit> visits;
+  Walk walk(sheet, start);
+  double least_way = std::numeric_limits<double>::infinity();
+  for (std::int64_t step = 0, attempts = 0; step < walk_length * triangle_count && attempts < most_attempts; ++step) {
+    const auto chord = walk.chord();
+    const auto [place, is_new] = visits.try_emplace(chord.code, Visit{chord, walk.slope(), step});
+    if (!is_new) {
+      const auto [from, slope, since] = std::exchange(place->second, {chord, walk.slope(), step});
+      const Return back{from, step - since, chord.coordinate, walk.slope() / slope};
+      const double goal = back.fixed_point();
+      const double way = std::abs(goal - from.coordinate) * sheet.crossings[from.triangle()].width;
+      const bool is_close = std::abs(back.coordinate - from.coordinate) < close_coordinates;
+      if ((is_inside(goal) && way < least_way) || is_close) {
+        auto orbit = converge(sheet, back);
+        if (!orbit.empty()) return begun_anew(sheet, std::move(orbit));
+        least_way = std::min(way, least_way);
+        ++attempts;
+      }
+    }
+    if (!walk.advance()) break;
   }
   return {};
 }

@@ -14,9 +14,9 @@ namespace pectinate::detail {
 /// triangles only once in the same sense.
 ///
 /// From a triangle along a strip of triangles back to it the chord coordinate changes affinely, s -> a s + b. The fixed
-/// point is a closed curve if it keeps to the strip, or to another one that comes back. The search goes from fixed
-/// point to fixed point, or as far towards one as the triangle reaches, which is Newton's method on a piecewise affine
-/// map; and where none is told, once more round.
+/// point is a closed curve if it keeps to the strip, or to another one that comes back: from strip to strip that is
+/// Newton's method on a piecewise affine map. The curve is followed on, and whenever it comes back to a triangle nearer
+/// to a fixed point than before, that is tried.
 Chords closed_orbit(const Sheet& sheet, const Chord& start, std::int64_t triangle_count);
 
 /// Is a closed polyline, whose last point is its first, long enough for a streamline, and are parts of it that are more
