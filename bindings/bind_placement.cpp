@@ -115,8 +115,8 @@ void bind_placement(py::module_& module) {
       [](const SurfaceMesh& mesh, const OrientationField& field, double separation_distance,
          std::vector<double> separation_distances, PlacementMethod method, OccupancyModel occupancy, int seed_count,
          double seed_distance_factor, double seed_clearance, double test_distance, double minimum_length,
-         bool close_loops, double singularity_radius, double abrupt_turn_angle, std::int64_t max_steps, std::uint64_t random_seed, int thread_count,
-         const py::object& progress) {
+         bool close_loops, double singularity_radius, double abrupt_turn_angle, std::int64_t max_steps,
+         std::uint64_t random_seed, int thread_count, const py::object& progress) {
         const PlacementOptions options{separation_distance,
                                        std::move(separation_distances),
                                        method,
@@ -142,9 +142,10 @@ void bind_placement(py::module_& module) {
       py::arg("seed_distance_factor") = defaults.seed_distance_factor,
       py::arg("seed_clearance") = defaults.seed_clearance, py::arg("test_distance") = defaults.test_distance,
       py::arg("minimum_length") = defaults.minimum_length, py::arg("close_loops") = defaults.close_loops,
-      py::arg("singularity_radius") = defaults.singularity_radius, py::arg("abrupt_turn_angle") = defaults.abrupt_turn_angle,
-      py::arg("max_steps") = defaults.max_steps, py::arg("random_seed") = defaults.random_seed,
-      py::arg("thread_count") = defaults.thread_count, py::arg("progress") = py::none());
+      py::arg("singularity_radius") = defaults.singularity_radius,
+      py::arg("abrupt_turn_angle") = defaults.abrupt_turn_angle, py::arg("max_steps") = defaults.max_steps,
+      py::arg("random_seed") = defaults.random_seed, py::arg("thread_count") = defaults.thread_count,
+      py::arg("progress") = py::none());
 }
 
 }  // namespace pectinate::bindings
