@@ -44,6 +44,8 @@ void bind_enumerations(py::module_& module) {
       .value("abrupt_turn", StopReason::abrupt_turn)
       .value("near_itself", StopReason::near_itself)
       .value("no_field", StopReason::no_field)
+      .value("closed", StopReason::closed)
+      .value("singularity", StopReason::singularity)
       .finalize();
 }
 
@@ -81,6 +83,8 @@ void bind_result(py::module_& module) {
       .def_readonly("seed_clearance", &PlacementOptions::seed_clearance)
       .def_readonly("test_distance", &PlacementOptions::test_distance)
       .def_readonly("minimum_length", &PlacementOptions::minimum_length)
+      .def_readonly("close_loops", &PlacementOptions::close_loops)
+      .def_readonly("singularity_radius", &PlacementOptions::singularity_radius)
       .def_readonly("abrupt_turn_angle", &PlacementOptions::abrupt_turn_angle)
       .def_readonly("max_steps", &PlacementOptions::max_steps)
       .def_readonly("random_seed", &PlacementOptions::random_seed)
@@ -111,8 +115,8 @@ void bind_placement(py::module_& module) {
       [](const SurfaceMesh& mesh, const OrientationField& field, double separation_distance,
          std::vector<double> separation_distances, PlacementMethod method, OccupancyModel occupancy, int seed_count,
          double seed_distance_factor, double seed_clearance, double test_distance, double minimum_length,
-         double abrupt_turn_angle, std::int64_t max_steps, std::uint64_t random_seed, int thread_count,
-         const py::object& progress) {
+         bool close_loops, double singularity_radius, double abrupt_turn_angle, std::int64_t max_steps,
+         std::uint64_t random_seed, int thread_count, const py::object& progress) {
         const PlacementOptions options{separation_distance,
                                        std::move(separation_distances),
                                        method,
@@ -122,6 +126,8 @@ void bind_placement(py::module_& module) {
                                        seed_clearance,
                                        test_distance,
                                        minimum_length,
+                                       close_loops,
+                                       singularity_radius,
                                        abrupt_turn_angle,
                                        max_steps,
                                        random_seed,
@@ -135,9 +141,11 @@ void bind_placement(py::module_& module) {
       py::arg("occupancy") = defaults.occupancy, py::arg("seed_count") = defaults.seed_count,
       py::arg("seed_distance_factor") = defaults.seed_distance_factor,
       py::arg("seed_clearance") = defaults.seed_clearance, py::arg("test_distance") = defaults.test_distance,
-      py::arg("minimum_length") = defaults.minimum_length, py::arg("abrupt_turn_angle") = defaults.abrupt_turn_angle,
-      py::arg("max_steps") = defaults.max_steps, py::arg("random_seed") = defaults.random_seed,
-      py::arg("thread_count") = defaults.thread_count, py::arg("progress") = py::none());
+      py::arg("minimum_length") = defaults.minimum_length, py::arg("close_loops") = defaults.close_loops,
+      py::arg("singularity_radius") = defaults.singularity_radius,
+      py::arg("abrupt_turn_angle") = defaults.abrupt_turn_angle, py::arg("max_steps") = defaults.max_steps,
+      py::arg("random_seed") = defaults.random_seed, py::arg("thread_count") = defaults.thread_count,
+      py::arg("progress") = py::none());
 }
 
 }  // namespace pectinate::bindings

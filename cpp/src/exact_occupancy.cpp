@@ -20,13 +20,21 @@ constexpr double retired_half_width = 1.0 / 128;
 /// The exact occupancy with seeds to draw, for the paper's placement methods.
 class ExactOccupancy final : public Occupancy {
  public:
-  ExactOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const Clearance& clearance)
-      : mesh_(mesh), sheet_(tracer.sheet()), occupancy_(mesh, tracer, clearance), free_(mesh.triangle_count()) {
+  ExactOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const Clearance& clearance,
+                 const SingularRegion& singular)
+      : mesh_(mesh),
+        sheet_(tracer.sheet()),
+        occupancy_(mesh, tracer, clearance, singular),
+        free_(mesh.triangle_count()) {
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh.triangle_count()); ++t) update(t);
   }
 
   bool admits(std::int32_t triangle, double chord, const EdgePoint&) const override {
     return !occupancy_.stopped().contains(sheet_.ranks[triangle], chord);
+  }
+
+  StopReason stop_reason(std::int32_t triangle, double chord) const override {
+    return occupancy_.stop_reason(sheet_.ranks[triangle], chord);
   }
 
   bool admits_seed(const Seed& seed) const override {
@@ -104,8 +112,8 @@ class ExactOccupancy final : public Occupancy {
 }  // namespace
 
 std::unique_ptr<Occupancy> make_exact_occupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer,
-                                                const Clearance& clearance) {
-  return std::make_unique<ExactOccupancy>(mesh, tracer, clearance);
+                                                const Clearance& clearance, const SingularRegion& singular) {
+  return std::make_unique<ExactOccupancy>(mesh, tracer, clearance, singular);
 }
 
 }  // namespace pectinate

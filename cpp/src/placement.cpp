@@ -16,6 +16,7 @@
 #include "detail/thread_pool.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/errors.hpp"
+#include "pectinate/field_topology.hpp"
 #include "pectinate/occupancy.hpp"
 
 namespace pectinate {
@@ -57,6 +58,16 @@ void check(const PlacementOptions& options) {
     throw InvalidOption("minimum_length is " + detail::number_text(options.minimum_length) +
                         ", but must be finite and not negative");
   }
+  if (options.close_loops && options.method != PlacementMethod::longest) {
+    throw InvalidOption("close_loops needs method longest; choose that, or leave it off");
+  }
+  if (!(options.singularity_radius >= 0 && std::isfinite(options.singularity_radius))) {
+    throw InvalidOption("singularity_radius is " + detail::number_text(options.singularity_radius) +
+                        ", but must be finite and not negative; 0 turns it off");
+  }
+  if (options.singularity_radius > 0 && options.occupancy != OccupancyModel::exact) {
+    throw InvalidOption("singularity_radius needs exact occupancy; leave it at 0 for the edge mask");
+  }
   if (options.thread_count < 1 || options.thread_count > 1024) {
     throw InvalidOption("thread_count is " + std::to_string(options.thread_count) + ", but must be in [1, 1024]");
   }
@@ -64,6 +75,15 @@ void check(const PlacementOptions& options) {
 
 Clearance clearance_of(const PlacementOptions& options) {
   return {options.test_distance, options.seed_clearance};
+}
+
+SingularRegion singular_region(const SurfaceMesh& mesh, const OrientationField& field, double radius) {
+  SingularRegion region{{}, radius};
+  if (radius == 0) return region;
+  for (const auto& singularity : field_topology(mesh, field).singularities) {
+    region.vertices.push_back(singularity.vertex);
+  }
+  return region;
 }
 
 /// Asks the user's callback now and then whether to go on.
@@ -259,11 +279,19 @@ double mean_separation(const StreamlineTracer& tracer, const Placement& placemen
   return length > 0 ? moment / length : 0;
 }
 
+/// What streamlines are placed on.
+struct Ground {
+  const SurfaceMesh& mesh;
+  const StreamlineTracer& tracer;
+  SingularRegion singular;
+};
+
 /// The paper's loop. Returns the coverage.
-double place_by_contest(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const PlacementOptions& options,
-                        Progress& progress, Placement& placement) {
+double place_by_contest(const Ground& ground, const PlacementOptions& options, Progress& progress,
+                        Placement& placement) {
+  const auto& [mesh, tracer, singular] = ground;
   const auto occupancy = options.occupancy == OccupancyModel::exact
-                             ? make_exact_occupancy(mesh, tracer, clearance_of(options))
+                             ? make_exact_occupancy(mesh, tracer, clearance_of(options), singular)
                              : make_edge_mask(mesh, tracer);
   SeedSource source(mesh, tracer, options);
   Contest contest(tracer, options.minimum_length, options.thread_count);
@@ -286,11 +314,11 @@ double place_by_contest(const SurfaceMesh& mesh, const StreamlineTracer& tracer,
 }
 
 /// The longest first. Returns the coverage.
-double place_longest(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const PlacementOptions& options,
-                     Progress& progress, Placement& placement) {
-  detail::ChordOccupancy occupancy(mesh, tracer, clearance_of(options));
+double place_longest(const Ground& ground, const PlacementOptions& options, Progress& progress, Placement& placement) {
+  detail::ChordOccupancy occupancy(ground.mesh, ground.tracer, clearance_of(options), ground.singular);
   const bool complete = detail::place_longest_first(
-      mesh, tracer, options.minimum_length, occupancy, [&](const auto& line) { append(line, placement); },
+      ground.mesh, ground.tracer, {options.minimum_length, options.close_loops}, occupancy,
+      [&](const auto& line) { append(line, placement); },
       [&] { return !progress.is_cancelled([&] { return occupancy.coverage(); }); });
   if (!complete) placement.end = PlacementEnd::cancelled;
   return occupancy.coverage();
@@ -307,7 +335,8 @@ Placement place_streamlines(const SurfaceMesh& mesh, const OrientationField& fie
   Placement placement;
   placement.offsets.push_back(0);
   const auto place = options.method == PlacementMethod::longest ? place_longest : place_by_contest;
-  const double coverage = place(mesh, tracer, options, progress, placement);
+  const double coverage =
+      place({mesh, tracer, singular_region(mesh, field, options.singularity_radius)}, options, progress, placement);
   placement.statistics = placement_statistics(placement.lengths, placement.stop_reasons, directed_area(mesh, field),
                                               mean_separation(tracer, placement), coverage);
   placement.options = options;

@@ -106,7 +106,9 @@ StopReason trace_one_way(const Tracing& tracing, Entry entry, double direction, 
     const Role role = detail::exit_role(crossings, entry.role, chord);
     const auto exit = crossings.exit(role);
     const auto point = detail::edge_point(tracing.mesh, triangle, crossings, role, chord);
-    if (tracing.occupancy && !tracing.occupancy->admits(triangle, chord, point)) return StopReason::near_other;
+    if (tracing.occupancy && !tracing.occupancy->admits(triangle, chord, point)) {
+      return tracing.occupancy->stop_reason(triangle, chord);
+    }
     const auto place = detail::position(tracing.mesh, point);
     const double piece = (place - previous).norm();
     if (workspace.points.is_near(place, direction * (length + piece)) ||

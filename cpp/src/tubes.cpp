@@ -53,6 +53,12 @@ double tube_radius(const TubeOptions& options, double arc, double length) {
   return options.radius * rise(arc) * rise(length - arc);
 }
 
+bool is_closed(const Placement& placement, std::size_t i) {
+  constexpr int fewest_sides = 3;
+  const auto first = placement.offsets[i], last = placement.offsets[i + 1] - 1;
+  return last - first >= fewest_sides && placement.points[first] == placement.points[last];
+}
+
 /// The points of streamline `i` with the normals of the surface beside them.
 std::vector<PolylinePoint> polyline(const SurfaceMesh& mesh, const Placement& placement, std::size_t i) {
   const auto first = placement.offsets[i], last = placement.offsets[i + 1] - 1;
@@ -62,7 +68,9 @@ std::vector<PolylinePoint> polyline(const SurfaceMesh& mesh, const Placement& pl
   std::vector<PolylinePoint> points;
   for (auto p = first; p <= last; ++p) {
     const Vector place = vector(placement.points[p]);
-    const Vector before = normal_of(std::max(p - 1, first)), after = normal_of(std::min(p, last - 1));
+    const bool wraps = is_closed(placement, i);
+    const Vector before = normal_of(p > first ? p - 1 : (wraps ? last - 1 : first));
+    const Vector after = normal_of(p < last ? p : (wraps ? first : last - 1));
     // Neighbours of a surface that cannot be oriented may disagree on their side.
     const Vector normal = before.dot(after) < 0 ? Vector(before - after) : Vector(before + after);
     const double arc = p == first ? 0 : points.back().arc + (place - points.back().place).norm();
@@ -80,11 +88,14 @@ double point_at(const std::vector<PolylinePoint>& points, double arc) {
   return before.point + (arc - before.arc) / (after->arc - before.arc);
 }
 
-/// Fills long segments so that the taper is followed, and leaves out points too close for rings. The two ends stay.
-std::vector<PolylinePoint> resample(const std::vector<PolylinePoint>& points, const TubeOptions& options) {
+/// Fills long segments so that the taper is followed, or a closed tube has rings enough to be one, and leaves out points
+/// too close for rings. The two ends stay.
+std::vector<PolylinePoint> resample(const std::vector<PolylinePoint>& points, bool is_closed,
+                                    const TubeOptions& options) {
   const double length = points.back().arc;
   const double shortest = std::min(least_ring_spacing * options.radius, length / 4);
-  const double longest = options.taper_length > 0 ? std::min(options.taper_length / 2, length / 2) : length;
+  const double tapered = options.taper_length > 0 ? std::min(options.taper_length / 2, length / 2) : length;
+  const double longest = is_closed ? length / 4 : tapered;
   std::vector<PolylinePoint> kept{points.front()};
   for (std::size_t p = 1; p < points.size(); ++p) {
     const bool is_last = p + 1 == points.size();
@@ -101,11 +112,13 @@ std::vector<PolylinePoint> resample(const std::vector<PolylinePoint>& points, co
   return kept;
 }
 
-std::vector<Station> stations(const std::vector<PolylinePoint>& points) {
+std::vector<Station> stations(const std::vector<PolylinePoint>& points, bool is_closed) {
   std::vector<Station> result;
-  for (std::size_t p = 0; p < points.size(); ++p) {
-    const auto& before = points[p == 0 ? 0 : p - 1];
-    const auto& after = points[std::min(p + 1, points.size() - 1)];
+  const std::size_t last = points.size() - 1;
+  for (std::size_t p = 0; p <= last; ++p) {
+    // The first and the last point of a closed line are one.
+    const auto& before = points[p > 0 ? p - 1 : (is_closed ? last - 1 : 0)];
+    const auto& after = points[p < last ? p + 1 : (is_closed ? 1 : last)];
     const Vector arriving = (points[p].place - before.place).stableNormalized();
     const Vector leaving = (after.place - points[p].place).stableNormalized();
     Vector tangent = arriving + leaving;
@@ -118,6 +131,19 @@ std::vector<Station> stations(const std::vector<PolylinePoint>& points) {
     result.push_back({points[p].place, tangent, normal, points[p].arc, points[p].point});
   }
   return result;
+}
+
+/// A closed line's last station, a copy of its first, may be turned against it: about the core of a Moebius strip, by
+/// half a turn. All stations take their share of that, and the copy goes.
+std::vector<Station> join_ends(std::vector<Station> stations) {
+  const auto &first = stations.front(), &last = stations.back();
+  const double twist = std::atan2(last.normal.cross(first.normal).dot(first.tangent), last.normal.dot(first.normal));
+  const double length = last.arc;
+  for (auto& station : stations) {
+    station.normal = Eigen::AngleAxisd(twist * station.arc / length, station.tangent) * station.normal;
+  }
+  stations.pop_back();
+  return stations;
 }
 
 /// Appends one tube to the rest.
@@ -136,11 +162,28 @@ class TubeBuilder {
       ring = next;
     }
     close(add_vertex(stations.back().place, stations.back().point), ring, false);
+    finish();
+  }
+
+  /// A tube whose last station is followed by its first, of the same thickness everywhere.
+  void add_closed(const std::vector<Station>& stations) {
+    const auto first = add_ring(stations.front(), options_.radius);
+    auto ring = first;
+    for (std::size_t i = 1; i < stations.size(); ++i) {
+      const auto next = add_ring(stations[i], options_.radius);
+      join(ring, next);
+      ring = next;
+    }
+    join(ring, first);
+    finish();
+  }
+
+ private:
+  void finish() {
     tubes_.vertex_offsets.push_back(static_cast<std::int64_t>(tubes_.vertices.size()));
     tubes_.triangle_offsets.push_back(static_cast<std::int64_t>(tubes_.triangles.size()));
   }
 
- private:
   std::int32_t add_vertex(const Vector& place, double point) {
     tubes_.vertices.push_back(detail::vec3(place));
     tubes_.vertex_points.push_back(point);
@@ -185,7 +228,9 @@ Tubes make_tubes(const SurfaceMesh& mesh, const Placement& placement, const Tube
   tubes.triangle_offsets.push_back(0);
   TubeBuilder builder(tubes, options);
   for (std::size_t i = 0; i + 1 < placement.offsets.size(); ++i) {
-    builder.add(stations(resample(polyline(mesh, placement, i), options)));
+    const bool closed = is_closed(placement, i);
+    const auto places = stations(resample(polyline(mesh, placement, i), closed, options), closed);
+    closed ? builder.add_closed(join_ends(places)) : builder.add(places);
   }
   return tubes;
 }

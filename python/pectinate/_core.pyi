@@ -201,6 +201,8 @@ class StopReason(IntEnum):
     abrupt_turn = 3
     near_itself = 4
     no_field = 5
+    closed = 6
+    singularity = 7
 
 class PlacementStatistics:
     streamline_count: int
@@ -223,6 +225,8 @@ class PlacementOptions:
     seed_clearance: float
     test_distance: float
     minimum_length: float
+    close_loops: bool
+    singularity_radius: float
     abrupt_turn_angle: float
     max_steps: int
     random_seed: int
@@ -340,6 +344,8 @@ def place_streamlines(
     seed_clearance: float = ...,
     test_distance: float = ...,
     minimum_length: float = ...,
+    close_loops: bool = ...,
+    singularity_radius: float = ...,
     abrupt_turn_angle: float = ...,
     max_steps: int = ...,
     random_seed: int = ...,

@@ -41,6 +41,8 @@ _OPTION_NAMES = (
     "seed_clearance",
     "test_distance",
     "minimum_length",
+    "close_loops",
+    "singularity_radius",
     "abrupt_turn_angle",
     "max_steps",
     "random_seed",
@@ -95,6 +97,14 @@ def place_streamlines(
         this far apart.
     minimum_length : float
         mm; shorter streamlines are not placed.
+    close_loops : bool
+        Closed curves of the field become closed streamlines, placed before others that wind onto them, if they are at
+        least 4 d_sep long: the last point repeats the first one, and both stop reasons are `closed`. Else they end
+        near themselves. Method "longest" only.
+    singularity_radius : float
+        mm: streamlines stop this near to singularities, the vertices about which the field turns (as
+        `InterpolatedField.topology` lists them); 0 lets them come as near as they do. What is that near counts as
+        covered. Exact occupancy only.
     abrupt_turn_angle : float
         Radians in (0, pi]: a streamline ends where the field turns by more from one triangle to the next; pi disables
         this.

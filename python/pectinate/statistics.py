@@ -36,7 +36,8 @@ class PlacementStatistics:
     coverage
         Share of the edges' length that is within the separation distance of a streamline.
     stop_counts
-        Ends by reason: `boundary`, `near_other`, `near_itself`, `abrupt_turn`, `no_field`, `max_steps`; two a
+        Ends by reason: `boundary`, `near_other`, `near_itself`, `abrupt_turn`, `no_field`, `max_steps`, `closed` (the
+        last point is the first), `singularity`; two a
         streamline.
     """
 

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <vector>
 
 #include "detail/chord_shadow.hpp"
+#include "detail/closed_orbit.hpp"
 #include "detail/interval_sets.hpp"
 #include "detail/segment_distance.hpp"
 #include "detail/self_free_run.hpp"
@@ -192,6 +194,40 @@ TEST_CASE("self-free run: of spirals, circles, figures of eight and straight lin
     const auto run = longest_self_free_run(line, self_free_starts(line, distance, 2 * distance));
     CHECK((run.first == 0 && run.last == 49));
   }
+}
+
+TEST_CASE("self-free loop: as all pairs say, wherever the loop begins") {
+  int free = 0, near = 0;
+  for (const double waist : {0.05, 0.1, 0.2, 0.3, 0.5}) {
+    for (const std::size_t count : {7, 30, 100}) {
+      for (const std::size_t start : {std::size_t{0}, count / 3, count / 2}) {
+        // An hourglass, so wide in the middle.
+        std::vector<Vector> points;
+        for (std::size_t i = 0; i <= count; ++i) {
+          const double t = 2 * std::numbers::pi * static_cast<double>((i + start) % count) / static_cast<double>(count);
+          points.emplace_back(std::cos(t), std::sin(t) * (waist / 2 + std::cos(t) * std::cos(t)),
+                              0.1 * std::sin(3 * t));
+        }
+        std::vector<double> arc{0};
+        for (std::size_t i = 0; i < count; ++i) arc.push_back(arc.back() + (points[i + 1] - points[i]).norm());
+        for (const double distance : {0.04, 0.09, 0.19, 0.4, 2.0}) {
+          bool expected = true;
+          for (std::size_t j = 0; j < count; ++j) {
+            for (std::size_t i = 0; i < j; ++i) {
+              const double between = std::min(arc[j] - arc[i + 1], arc.back() - arc[j + 1] + arc[i]);
+              if (between <= 2 * distance) continue;
+              expected &= segment_distance(points[i], points[i + 1], points[j], points[j + 1]) >= distance;
+            }
+          }
+          CHECK(is_self_free_loop(points, distance, 2 * distance) == expected);
+          CHECK(keeps_from_itself(points, distance) == (expected && arc.back() >= 4 * distance));
+          ++(expected ? free : near);
+        }
+      }
+    }
+  }
+  CHECK(free > 50);
+  CHECK(near > 25);
 }
 
 TEST_CASE("interval sets: they hold the union of what was added") {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "hard_fields.hpp"
 #include "placement_checks.hpp"
 
 namespace pectinate::test {
@@ -22,44 +23,6 @@ PlacementOptions with(double separation, PlacementMethod method = longest) {
   options.method = method;
   options.seed_count = 6;
   return options;
-}
-
-/// Fields that ask much of the engine, by name.
-struct NamedField {
-  const char* name;
-  Vector (*at)(const Vector& centre, double noise);
-};
-
-constexpr NamedField hard_fields[] = {
-    {"noise", [](const Vector&, double noise) { return Vector(std::cos(9 * noise), std::sin(9 * noise), 0); }},
-    {"patches of zero",
-     [](const Vector& c, double noise) { return noise < 0.4 ? Vector(0, 0, 0) : Vector(1, std::sin(c.x()), 0); }},
-    {"patches of not a number",
-     [](const Vector& c, double noise) {
-       return noise < 0.2 ? Vector(std::nan(""), 0, 0) : Vector(std::cos(c.y()), 1, 0);
-     }},
-    {"convergent edges", [](const Vector& c, double) { return Vector(c.x() < 6.1 ? 0.2 : -0.2, 1, 0); }},
-    {"turns everywhere",
-     [](const Vector& c, double) {
-       return std::fmod(c.x() + 2 * c.y(), 2) < 1 ? Vector(1, 0.1, 0) : Vector(0.1, 1, 0);
-     }},
-    {"vortex", [](const Vector& c, double) { return Vector(-(c.y() - 4.2), c.x() - 6.3, 0); }},
-    {"spiral",
-     [](const Vector& c, double) {
-       const Vector r = c - Vector(6.3, 4.2, 0);
-       return Vector(-r.y() + 0.06 * r.x(), r.x() + 0.06 * r.y(), 0);
-     }},
-    {"sink", [](const Vector& c, double) { return Vector(c - Vector(6.3, 4.2, 0)); }},
-    {"wedge",
-     [](const Vector& c, double) {
-       const double half = std::atan2(c.y() - 4.2, c.x() - 6.3) / 2;
-       return Vector(std::cos(half), std::sin(half), 0);
-     }},
-};
-
-OrientationField make_field(const SurfaceMesh& mesh, const NamedField& field) {
-  Random random(3);
-  return field_of(mesh, [&](const Vector& c, const Vector&) { return field.at(c, random.unit()); });
 }
 
 /// The room that each streamline had to start beside those placed before it, where it had most.
@@ -85,10 +48,6 @@ std::vector<double> separations_over(const SurfaceMesh& mesh, double least, doub
     separations.push_back(least + (most - least) * (0.5 + 0.5 * std::sin(centre(mesh, t).x())));
   }
   return separations;
-}
-
-std::int64_t stop_count(const Placement& placement, StopReason reason) {
-  return placement.statistics.stop_counts[static_cast<std::size_t>(reason)];
 }
 
 }  // namespace
@@ -294,27 +253,6 @@ TEST_CASE("exact placement: oblique parallel lines are d_sep apart and whole") {
     const auto placement = checked(mesh, constant_field(mesh, Vector(std::cos(angle), std::sin(angle), 0)), with(1));
     CHECK(placement.statistics.mean_spacing_ratio < 1.02);  // of which a line short of a corner is a part
     CHECK(stop_count(placement, StopReason::boundary) == 2 * placement.statistics.streamline_count);
-  }
-}
-
-TEST_CASE("exact placement: each stop reason is met and right") {
-  const auto mesh = jittered_grid(12, 9).mesh();
-  const auto place = [&](const char* name, double separation, std::int64_t max_steps = 1000) {
-    const auto hard = std::find_if(std::begin(hard_fields), std::end(hard_fields),
-                                   [&](const auto& one) { return std::string(one.name) == name; });
-    auto options = with(separation);
-    options.max_steps = max_steps;
-    return checked(mesh, make_field(mesh, *hard), options);
-  };
-  CHECK(stop_count(place("sink", 0.3), StopReason::boundary) > 0);
-  CHECK(stop_count(place("sink", 0.3), StopReason::near_other) > 0);
-  CHECK(stop_count(place("convergent edges", 0.1), StopReason::abrupt_turn) > 0);
-  CHECK(stop_count(place("patches of zero", 0.3), StopReason::no_field) > 0);
-  CHECK(stop_count(place("vortex", 0.3), StopReason::near_itself) > 0);
-  const auto cut_short = place("sink", 0.3, 2);
-  CHECK(stop_count(cut_short, StopReason::max_steps) > 0);
-  for (std::size_t i = 0; i < cut_short.lengths.size(); ++i) {
-    CHECK(cut_short.offsets[i + 1] - cut_short.offsets[i] <= 2 * 2 + 2);
   }
 }
 

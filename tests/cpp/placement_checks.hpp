@@ -175,12 +175,23 @@ inline void check_segment_separation(const Placement& placement, double separati
   CHECK(least >= separation);
 }
 
-/// With method longest: parts of a streamline that are more than 2 d_sep apart along it are at least d_sep apart.
+inline std::int64_t stop_count(const Placement& placement, StopReason reason) {
+  return placement.statistics.stop_counts[static_cast<std::size_t>(reason)];
+}
+
+inline bool is_closed(const Placement& placement, std::size_t line) {
+  return placement.stop_reasons[line][0] == StopReason::closed;
+}
+
+/// With method longest: parts of a streamline that are more than 2 d_sep apart along it, round a closed one the shorter
+/// way, are at least d_sep apart.
 inline void check_self_separation(const Placement& placement, double separation) {
   const auto segments = segments_of(placement);
   for (std::size_t i = 0; i < segments.size(); ++i) {
     for (std::size_t j = i; j-- > 0 && segments[j].line == segments[i].line;) {
+      const double way_round = placement.lengths[segments[i].line] - segments[i].arc_end + segments[j].arc;
       if (segments[i].arc - segments[j].arc_end <= 2 * separation * (1 + 1e-9)) continue;
+      if (is_closed(placement, segments[i].line) && way_round <= 2 * separation * (1 + 1e-9)) continue;
       if (segments[i].is_farther_than(segments[j], separation)) continue;
       CHECK(segments[i].distance(segments[j]) >= separation * (1 - 1e-9));
     }

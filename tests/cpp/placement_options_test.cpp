@@ -18,6 +18,7 @@ TEST_CASE("placement: the result carries the options as used") {
   options.seed_clearance = 1.2;
   options.test_distance = 0.9;
   options.minimum_length = 0.3;
+  options.singularity_radius = 0.01;
   options.random_seed = 99;
   options.seed_distance_factor = 1.7;
   options.abrupt_turn_angle = 1;
@@ -31,6 +32,10 @@ TEST_CASE("placement: the result carries the options as used") {
   CHECK(used.seed_clearance == 1.2);
   CHECK(used.test_distance == 0.9);
   CHECK(used.minimum_length == 0.3);
+  CHECK(used.singularity_radius == 0.01);
+  options.method = PlacementMethod::longest;
+  options.close_loops = true;
+  CHECK(checked(mesh, smooth_field(mesh), options).options.close_loops);
   CHECK(used.seed_count == 5);
   CHECK(used.random_seed == 99);
   CHECK(used.seed_distance_factor == 1.7);
@@ -78,6 +83,13 @@ TEST_CASE("placement: options out of range are refused") {
   };
   refused_with_mask([](auto& options) { options.seed_clearance = 1.1; });
   refused_with_mask([](auto& options) { options.test_distance = 0.8; });
+  refused_with_mask([](auto& options) { options.singularity_radius = 0.1; });
+  refused_with_mask([](auto& options) { options.close_loops = true; });
+  for (const double bad : {-1e-9, nan, infinity}) refused([=](auto& options) { options.singularity_radius = bad; });
+  refused([](auto& options) {
+    options.method = PlacementMethod::distance;
+    options.close_loops = true;
+  });
   const std::size_t count = mesh.triangle_count();
   for (const std::size_t size : {std::size_t{1}, count - 1, count + 1}) {
     refused([=](auto& options) { options.separation_distances.assign(size, 1); });

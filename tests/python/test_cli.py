@@ -51,6 +51,7 @@ def test_place_leaves_the_defaults_to_the_library(square, tmp_path):
         ("--method", "neighborhood", "method", "neighborhood"),
         ("--seeds", "3", "seed_count", 3),
         ("--seed-distance-factor", "1.5", "seed_distance_factor", 1.5),
+        ("--singularity-radius", "0.5", "singularity_radius", 0.5),
         ("--max-steps", "7", "max_steps", 7),
         ("--random-seed", "12345", "random_seed", 12345),
         ("--threads", "2", "thread_count", 2),
@@ -62,6 +63,11 @@ def test_place_passes_each_option_on(square, capsys, flag, word, option, value):
     default = run_json(capsys, "place", square)["options"]
     assert changed.pop(option) == value != default.pop(option)
     assert changed == default
+
+
+def test_place_closes_loops_if_asked(square, capsys):
+    default = run_json(capsys, "place", square)["options"]
+    assert run_json(capsys, "place", square, "--close-loops")["options"] == default | {"close_loops": True}
 
 
 def test_tube_options_reach_the_tubes(square, tmp_path):
@@ -135,6 +141,12 @@ def test_demo_makes_both_atria_inside_and_outside(tmp_path, capsys):
         (["place", "SQUARE", "--method", "nearest"], ExitCode.USAGE, "--method is 'nearest'"),
         (["place", "SQUARE", "--abrupt-turn-angle", "181"], ExitCode.USAGE, "at most 180 degrees"),
         (["place", "SQUARE", "--minimum-length", "-1"], ExitCode.USAGE, "--minimum-length is -1"),
+        (["place", "SQUARE", "--singularity-radius", "-1"], ExitCode.USAGE, "--singularity-radius is -1"),
+        (
+            ["place", "SQUARE", "--close-loops", "--method", "random"],
+            ExitCode.USAGE,
+            "--close-loops needs method longest",
+        ),
         (["place", "SQUARE", "--tubes", "FOLDER/t.ply", "--tube-radius", "-1"], ExitCode.USAGE, "--tube-radius is -1"),
         (["place", "SQUARE", "--units", "inch"], ExitCode.USAGE, "inch"),
         (["place", "SQUARE", "--out", "FOLDER/r.txt"], ExitCode.USAGE, ".txt"),

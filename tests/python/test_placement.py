@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 import pectinate
 from meshes import Mesh, grid, moebius_strip, single_triangle, sphere, three_triangles_on_an_edge, torus, two_components
 from pectinate import Model, Placement, load, place_streamlines
+from pectinate._core import StopReason
 from pectinate.errors import InvalidField, InvalidFile, InvalidMesh, InvalidOption
 from pectinate.placement import DEFAULTS
 
@@ -99,7 +100,10 @@ def check_statistics(placement: Placement) -> None:
     assert statistics.mean_spacing_ratio == pytest.approx(statistics.mean_spacing / separation)
     assert statistics.short_fraction == pytest.approx((lengths < separation).mean())
     assert 0 < statistics.coverage <= 1
-    assert list(statistics.stop_counts.values()) == np.bincount(placement.stop_reasons.ravel(), minlength=6).tolist()
+    assert (
+        list(statistics.stop_counts.values())
+        == np.bincount(placement.stop_reasons.ravel(), minlength=len(StopReason)).tolist()
+    )
 
 
 def same_bytes(one: Placement, other: Placement) -> bool:
@@ -199,6 +203,7 @@ def test_defaults_are_the_engine_s_and_come_back_as_used() -> None:
     given: dict[str, Any] = {"method": "random", "occupancy": "edge_mask", "seed_count": 2, "random_seed": 2**64 - 1}
     assert place_streamlines(model, **given).options == DEFAULTS | given
     given = {"seed_clearance": 1.11, "test_distance": 0.9, "minimum_length": 0.25}
+    given |= {"close_loops": True, "singularity_radius": 0.1}
     assert place_streamlines(model, **given).options == DEFAULTS | given
 
 
@@ -285,7 +290,7 @@ def test_a_separation_distance_out_of_range_is_refused_and_its_triangle_named(ba
         place_streamlines(model_of(grid()), separation_distance=values)
 
 
-@pytest.mark.parametrize("options", [{}, {"seed_clearance": 1.1}, {"test_distance": 0.9}])
+@pytest.mark.parametrize("options", [{}, {"seed_clearance": 1.1}, {"test_distance": 0.9}, {"singularity_radius": 0.1}])
 def test_what_needs_exact_occupancy_is_refused_with_the_mask(options: dict[str, Any]) -> None:
     method = "random" if options else "longest"
     with pytest.raises(InvalidOption, match="exact occupancy"):
@@ -301,6 +306,7 @@ BAD_OPTIONS = {
     "seed_clearance": [0.99, 2.01, np.nan],
     "test_distance": [0, 1.01, -1, np.nan],
     "minimum_length": [-1, np.nan, np.inf],
+    "singularity_radius": [-1, np.nan, np.inf],
     "abrupt_turn_angle": [0, -1, 4, np.nan],
     "max_steps": [0, -7],
     "thread_count": [0, -1, 10**6],

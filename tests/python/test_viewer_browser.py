@@ -15,8 +15,9 @@ import meshes
 import pectinate
 from browser import Browser, start_browser
 from pectinate import datasets, place_streamlines
+from pectinate._core import StopReason
 from pectinate.figure import Layer, SurfaceValues, render_view, standard_view
-from pectinate.figure.polylines import values_at
+from pectinate.figure.polylines import Lines, values_at
 from pectinate.viewer import Marker, Page, Part
 
 SIZE = (360, 300)
@@ -216,6 +217,45 @@ def test_tubes_have_the_taper_of_the_paper(browser: Browser, page: Path, placeme
     assert share.max() == pytest.approx((1 - np.exp(-0.5 * longest / 2.0)) ** 2, abs=0.02)
     # An end for each line, with as many vertices as a ring has.
     assert np.count_nonzero(share == 0) == 2 * 8 * len(placement)
+
+
+def closed_lines() -> dict[str, Lines]:
+    """Streamlines round a ring, and a knot, whose parallel normals do not close."""
+    vertices, triangles = meshes.annulus(inner=4.0, outer=10.0)
+    x, y, _ = vertices[triangles].mean(axis=1).T
+    model = pectinate.load((vertices, triangles), field=np.column_stack([-y, x, 0 * x]), field_location="triangle")
+    placement = place_streamlines(model, separation_distance=2.0, close_loops=True)
+    assert (placement.stop_reasons == StopReason.closed).all()
+    t = np.linspace(0, 2 * np.pi, 200)
+    ring = 5 + 2 * np.cos(3 * t)
+    knot = np.column_stack([ring * np.cos(2 * t), ring * np.sin(2 * t), 2 * np.sin(3 * t)])
+    knot[-1] = knot[0]
+    return {"ring": Lines(placement.points, placement.offsets, 0.3, 2.0), "knot": Lines.of([knot], 0.3)}
+
+
+@pytest.mark.parametrize("name", ["ring", "knot"])
+def test_tubes_of_closed_lines_are_rings(browser: Browser, tmp_path: Path, name: str) -> None:
+    part = Part(name, meshes.annulus(inner=4.0, outer=10.0), streamlines=closed_lines()[name])
+    Page([part], views=["superior"]).save(tmp_path / "rings.html")
+    open_folded(browser, tmp_path / "rings.html")
+    assert browser.messages() == []
+
+    def array(of_geometry: str) -> NDArray[np.float64]:
+        values = browser.run(f"return Array.from(viewer.parts[0].streamlines.geometry.{of_geometry}.array)")
+        return np.array(values, dtype=np.float64)
+
+    thickness, corners = array("attributes.thickness"), array("index").astype(int).reshape(-1, 3)
+    assert (thickness == 1).all()
+    starts, ends = corners.ravel(), np.roll(corners, -1, axis=1).ravel()
+    sides = set(zip(starts.tolist(), ends.tolist(), strict=True))
+    # Each side has its counterpart: watertight; and with so many vertices the Euler characteristic is 0.
+    assert len(sides) == len(starts)
+    assert all((second, first) in sides for first, second in sides)
+    assert len(thickness) - len(sides) // 2 + len(corners) == 0
+    centres, offsets = array("attributes.position").reshape(-1, 3), array("attributes.offset").reshape(-1, 4) / 127
+    # From ring to ring neighbours are close, at the joint as well: nothing is twisted.
+    assert np.linalg.norm(centres[starts] - centres[ends], axis=1).max() < 1
+    assert np.linalg.norm(offsets[starts] - offsets[ends], axis=1).max() < 1.1
 
 
 def test_a_drag_turns_the_scene_like_a_ball(browser: Browser, page: Path) -> None:

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "pectinate/tracing.hpp"
 
@@ -26,6 +27,9 @@ class Occupancy {
   /// May a streamline cross `triangle` by the chord with this coordinate, which leaves at `exit`?
   virtual bool admits(std::int32_t triangle, double chord, const EdgePoint& exit) const = 0;
 
+  /// Why it may not.
+  virtual StopReason stop_reason(std::int32_t /*triangle*/, double /*chord*/) const { return StopReason::near_other; }
+
   /// Marks everything within d_sep of the streamline that is joined to it on the surface within that distance.
   virtual void add(const Streamline& streamline) = 0;
 
@@ -46,11 +50,18 @@ struct Clearance {
   double seed = 1;  ///< it starts only where nothing is this close; at least `stop`
 };
 
+/// What streamlines stay out of, because the field is singular there: of the surface, what is joined to one of these
+/// vertices within the radius.
+struct SingularRegion {
+  std::vector<std::int32_t> vertices;
+  double radius = 0;  ///< unit of the mesh
+};
+
 /// Exact occupancy: for every triangle the chords that come within d_sep of a streamline, as intervals in closed form.
 /// The separation of whole segments is exact anywhere on the surface, for any ratio of d_sep to edge length. Distance
 /// is Euclidean, to whatever is joined on the surface through triangles that near.
 std::unique_ptr<Occupancy> make_exact_occupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer,
-                                                const Clearance& clearance = {});
+                                                const Clearance& clearance = {}, const SingularRegion& singular = {});
 
 /// The paper's occupancy (section 2.5): 64 bits an edge, one per sub-segment, set when any part of it comes within
 /// d_sep of a streamline. Exact at the edge points, to 1/64 of an edge on the safe side; inside the triangles it is

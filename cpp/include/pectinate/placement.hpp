@@ -49,6 +49,13 @@ struct PlacementOptions {
   /// far apart (d_test of Jobard and Lefer 1997). Exact occupancy only.
   double test_distance = 1;
   double minimum_length = 0;  ///< shorter streamlines are not placed, unit of the mesh, >= 0
+  /// Closed curves of the field become closed streamlines, placed before others that wind onto them, if they are at
+  /// least 4 d_sep long. Method `longest` only; off, they end near themselves.
+  bool close_loops = false;
+  /// Streamlines stop this near to singularities (vertices about which the field turns, as `field_topology` finds
+  /// them), unit of the mesh, >= 0; 0 lets them come as near as they do. What is that near counts as covered. Exact
+  /// occupancy only.
+  double singularity_radius = 0;
   double abrupt_turn_angle = TracingOptions{}.abrupt_turn_angle;  ///< radians, in (0, pi]; pi disables criterion 4
   std::int64_t max_steps = TracingOptions{}.max_steps;            ///< triangles crossed each way, >= 1
   std::uint64_t random_seed = 20190101;                           ///< the same seed gives the same bytes
@@ -75,7 +82,8 @@ struct Placement {
 
 /// Fills the surface with streamlines no closer than d_sep, one by one, until nothing is free (paper sections 2.4 to
 /// 2.7). With exact occupancy and `test_distance` 1, whole streamlines are at least d_sep apart, and parts of one that
-/// are more than 2 d_sep apart along it too (points only for the paper's methods). Ends always.
+/// are more than 2 d_sep apart along it too (points only for the paper's methods; along a closed one, the shorter way
+/// round). Ends always.
 ///
 /// The same arguments give the same bytes, whatever `thread_count`. Throws InvalidOption, InvalidField.
 Placement place_streamlines(const SurfaceMesh& mesh, const OrientationField& field, const PlacementOptions& options);

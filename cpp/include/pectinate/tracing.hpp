@@ -38,8 +38,10 @@ enum class StopReason : std::uint8_t {
   abrupt_turn,  ///< criterion 4: the field turns by more than `abrupt_turn_angle` across the edge, or makes a U-turn
   near_itself,  ///< criterion 5: a part of it more than 2 d_sep back, or in the same triangle, is closer than d_sep
   no_field,     ///< the triangle ahead has no direction
+  closed,       ///< it has no end: its last point is its first, bit for bit
+  singularity,  ///< the field is singular nearer than `singularity_radius`
 };
-inline constexpr int stop_reason_count = 6;
+inline constexpr int stop_reason_count = 8;
 
 struct TracingOptions {
   double separation_distance;  ///< d_sep, unit of the mesh, > 0

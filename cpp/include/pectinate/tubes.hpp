@@ -30,7 +30,7 @@ struct Tubes {
 
 /// Regular polygons extruded along the streamlines with the radius of the paper's equation (3),
 /// rho(s) = rho_0 (1 - exp(-s / lambda)) (1 - exp(-(L - s) / lambda)), aligned by the surface normals (section 2.8).
-/// Each tube is watertight. Throws InvalidOption.
+/// Each tube is watertight; that of a closed streamline is a ring of radius rho_0. Throws InvalidOption.
 Tubes make_tubes(const SurfaceMesh& mesh, const Placement& placement, const TubeOptions& options = {});
 
 }  // namespace pectinate

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "detail/chord_shadow.hpp"
+#include "detail/chords_near_vertices.hpp"
 
 namespace pectinate::detail {
 namespace {
@@ -36,14 +37,17 @@ auto lanes_at(const float* values) {
 
 }  // namespace
 
-ChordOccupancy::ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const Clearance& clearance)
+ChordOccupancy::ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const Clearance& clearance,
+                               const SingularRegion& singular)
     : mesh_(mesh),
       tracer_(tracer),
       sheet_(tracer.sheet()),
       clearance_(clearance),
       has_seed_sets_(clearance.seed != clearance.stop),
+      has_singular_(!singular.vertices.empty() && singular.radius > 0),
       stopped_(mesh.triangle_count()),
       unseeded_(has_seed_sets_ ? mesh.triangle_count() : 0),
+      singular_(has_singular_ ? mesh.triangle_count() : 0),
       origin_(vector(mesh.vertices()[0])),
       slack_(size_slack * static_cast<float>(mesh.bounding_box_diagonal())),
       tiles_(mesh.triangle_count()) {
@@ -80,6 +84,15 @@ ChordOccupancy::ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& 
       const auto rank = sheet_.ranks[t];
       tiles_[rank].neighbours[role_with_edge(mesh, t, sheet_.crossings[rank], edge)] = none;
     }
+  }
+  if (has_singular_) keep_out_of(singular);
+}
+
+void ChordOccupancy::keep_out_of(const SingularRegion& region) {
+  for (const auto& [triangle, chords] : chords_near_vertices(mesh_, sheet_, region.vertices, region.radius)) {
+    stopped_.add(triangle, chords);
+    if (has_seed_sets_) unseeded_.add(triangle, chords);
+    singular_.add(triangle, chords);
   }
 }
 

@@ -31,12 +31,17 @@ struct Polyline {
 /// area that comes within reach. Triangles are those of the tracer's sheet.
 class ChordOccupancy {
  public:
-  ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const Clearance& clearance);
+  ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const Clearance& clearance,
+                 const SingularRegion& singular = {});
 
   /// Chords that no streamline may take, and those at which none may start (a superset).
   const IntervalSets& stopped() const { return stopped_; }
   const IntervalSets& unseeded() const { return has_seed_sets_ ? unseeded_ : stopped_; }
   bool has_seed_sets() const { return has_seed_sets_; }
+  /// Why no streamline may take a chord.
+  StopReason stop_reason(std::int32_t triangle, double chord) const {
+    return has_singular_ && singular_.contains(triangle, chord) ? StopReason::singularity : StopReason::near_other;
+  }
 
   void add(const Polyline& line);
 
@@ -99,6 +104,7 @@ class ChordOccupancy {
     IntervalSets& sets;
   };
 
+  void keep_out_of(const SingularRegion& region);
   void add_block(const Polyline& line, std::size_t first, std::size_t last);
   void fill_block(const Polyline& line, std::size_t first, std::size_t last);
   void simplify_block(const Polyline& line, std::size_t first);
@@ -128,8 +134,8 @@ class ChordOccupancy {
   const StreamlineTracer& tracer_;
   const Sheet& sheet_;
   Clearance clearance_;
-  bool has_seed_sets_;
-  IntervalSets stopped_, unseeded_;
+  bool has_seed_sets_, has_singular_;
+  IntervalSets stopped_, unseeded_, singular_;
   Vector origin_;
   float slack_;  // of single precision, for the surface's size
   LargeArray<Tile> tiles_;

@@ -22,12 +22,18 @@ struct PlacedLine {
   std::array<StopReason, 2> stop_reasons{};
 };
 
+/// Which lines there may be.
+struct LineRules {
+  double minimum_length;
+  bool close_loops;  ///< closed curves of the field become closed lines
+};
+
 /// Places the longest streamline that still fits, again and again, until none does.
 ///
-/// None shorter than `minimum_length`. Calls `place` for each, and stops early when `go_on` says no; returns whether it
+/// Calls `place` for each, and stops early when `go_on` says no; returns whether it
 /// came to the end. Deterministic without random numbers. Ends always: every placed streamline takes chords of positive
 /// measure, every seed that gives none is retired.
-bool place_longest_first(const SurfaceMesh& mesh, const StreamlineTracer& tracer, double minimum_length,
+bool place_longest_first(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const LineRules& rules,
                          ChordOccupancy& occupancy, const std::function<void(const PlacedLine&)>& place,
                          const std::function<bool()>& go_on);
 

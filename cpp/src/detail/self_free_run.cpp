@@ -134,4 +134,23 @@ SegmentRun longest_self_free_run(const std::vector<Vector>& points, std::span<co
   return best;
 }
 
+bool is_self_free_loop(const std::vector<Vector>& points, double distance, double arc_gap) {
+  const auto count = points.size() - 1;
+  const auto arc = arc_lengths(points);
+  const BallTree tree(points);
+  bool is_free = true;
+  for (std::size_t leaf = 0; leaf * BallTree::branching < count && is_free; ++leaf) {
+    const auto begin = leaf * BallTree::branching, end = std::min(begin + BallTree::branching, count);
+    tree.visit_near(leaf, distance, 0, [&](std::size_t from, std::size_t to) {
+      for (auto j = begin; j < end && is_free; ++j) {
+        for (auto i = from; i < std::min(to, j) && is_free; ++i) {
+          if (arc[j] - arc[i + 1] <= arc_gap || arc.back() - arc[j + 1] + arc[i] <= arc_gap) continue;
+          is_free = segment_distance(points[i], points[i + 1], points[j], points[j + 1]) >= distance;
+        }
+      }
+    });
+  }
+  return is_free;
+}
+
 }  // namespace pectinate::detail

@@ -24,4 +24,8 @@ std::vector<std::int32_t> self_free_starts(const std::vector<Vector>& points, do
 SegmentRun longest_self_free_run(const std::vector<Vector>& points, std::span<const std::int32_t> starts,
                                  std::int32_t before = 0);
 
+/// Is a closed polyline, whose last point is its first, free of such pairs, the line between them taken the shorter way
+/// round?
+bool is_self_free_loop(const std::vector<Vector>& points, double distance, double arc_gap);
+
 }  // namespace pectinate::detail

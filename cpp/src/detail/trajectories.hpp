@@ -31,6 +31,8 @@ struct Trajectory {
   Stretch stretch;
   std::array<StopReason, 2> ends;
   double bonus;
+
+  bool is_closed() const { return ends[0] == StopReason::closed; }
 };
 
 /// A stretch of a trajectory under the length that it had when it was last looked at; it only ever gets shorter.

@@ -136,9 +136,16 @@ def _add_placement(parser: argparse.ArgumentParser) -> None:
     add("--seed-clearance", "seed_clearance", float, "FACTOR", "place only where some point is this many separations from all others")
     add("--test-distance", "test_distance", float, "FACTOR", "run on until this many separations from others")
     add("--minimum-length", "minimum_length", float, "MM", "shorter streamlines are not placed")
+    add("--singularity-radius", "singularity_radius", float, "MM", "stop this near to singularities of the field")
     add("--max-steps", "max_steps", whole, "N", "triangles that a streamline crosses each way at most")
     add("--random-seed", "random_seed", seed, "N", "the same number gives the same result")
     add("--threads", "thread_count", whole, "N", "the result does not depend on it")
+    group.add_argument(
+        "--close-loops",
+        action="store_true",
+        default=None,
+        help="make closed streamlines of closed curves of the field (method longest)",
+    )
     group.add_argument(
         "--abrupt-turn-angle",
         type=degrees(180),

@@ -14,6 +14,8 @@ from pectinate.figure.lines import located_tubes
 from pectinate.figure.values import NamedValues, SurfaceValues
 
 _FEWEST_POINTS = 2
+# Of a closed line, so that it encloses something.
+_FEWEST_SIDES = 3
 # Tubes get a ring every so many radii; closer ones do not show.
 _RING_SPACING = 1.5
 # Nor are rings farther apart than this share of the taper length, so that the taper is followed.
@@ -97,6 +99,11 @@ class Lines:
         offsets = np.cumsum([0] + [len(line) for line in arrays])
         return cls(np.concatenate([np.zeros((0, 3)), *arrays]), offsets, radius)
 
+    def closed(self) -> NDArray[np.bool_]:
+        """Tell which lines, (n,), are closed: they end where they begin, with two points or more between."""
+        first, last = self.offsets[:-1], self.offsets[1:] - 1
+        return np.asarray((self.points[first] == self.points[last]).all(axis=1) & (last - first >= _FEWEST_SIDES))
+
     def tubes(self) -> TubeMesh:
         """Make the tubes."""
         if self.make_tubes is not None:
@@ -125,7 +132,7 @@ def resampled(lines: Lines) -> tuple[NDArray[np.float64], NDArray[np.float64], N
     places : (M,) float64
         Where on the lines the points are: the index of one of theirs, and the share of the way to the next one.
     counts : (n,) int64
-        Points of each line, at least two.
+        Points of each line, at least two; of a closed one, whose last point is its first, at least four.
     """
     if len(lines.offsets) < 2:  # noqa: PLR2004
         return np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.int64)
@@ -137,7 +144,8 @@ def resampled(lines: Lines) -> tuple[NDArray[np.float64], NDArray[np.float64], N
     # Whole numbers of lines apart, so that no line's samples reach into the next one.
     steps[last[:-1]] = 1.0
     arc = np.append(0.0, np.cumsum(steps))
-    counts = np.maximum(2, 1 + np.ceil((arc[last] - arc[first]) / spacing).astype(np.int64))
+    fewest = np.where(lines.closed(), 1 + _FEWEST_SIDES, _FEWEST_POINTS)
+    counts = np.maximum(fewest, 1 + np.ceil((arc[last] - arc[first]) / spacing).astype(np.int64))
     rank = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
     share = rank / np.repeat(counts - 1, counts)
     samples = np.repeat(arc[first], counts) * (1 - share) + np.repeat(arc[last], counts) * share

@@ -133,6 +133,7 @@ def _lines(lines: Lines | None, part: Part, scales: _Scales, pack: ArrayPack) ->
     return place | {
         "positions": pack.add(positions, differences=2),
         "counts": pack.add(counts.astype(np.uint32)),
+        "closed": np.flatnonzero(lines.closed()).tolist(),
         "radius": lines.radius,
         "taper_length": lines.taper_length,
         "values": values,

@@ -10,12 +10,15 @@ function buildTubes(bytes, description) {
   const counts = unpack(bytes, description.counts);
   const round = description.taper_length === 0;
   const extraRings = round ? 2 * (END_RINGS.length - 1) : 0;
-  const rings = new Rings(points.length / 3 + extraRings * counts.length);
+  const closed = new Set(description.closed);
+  const openCount = counts.length - closed.size;
+  const rings = new Rings(points.length / 3 + extraRings * openCount - closed.size);
   let first = 0;
-  for (const count of counts) {
-    addTube(rings, points.subarray(3 * first, 3 * (first + count)), description.taper_length, first);
+  counts.forEach((count, line) => {
+    const add = closed.has(line) ? addClosedTube : addTube;
+    add(rings, points.subarray(3 * first, 3 * (first + count)), description.taper_length, first);
     first += count;
-  }
+  });
   return rings.geometry();
 }
 
@@ -90,6 +93,27 @@ function addTube(rings, points, taperLength, first) {
   }
 }
 
+// Of a line whose last point is its first: as thick everywhere, without ends.
+function addClosedTube(rings, points, taperLength, first) {
+  const count = points.length / 3 - 1;
+  const point = (i) => [points[3 * (i % count)], points[3 * (i % count) + 1], points[3 * (i % count) + 2]];
+  const arcs = [0];
+  for (let i = 1; i <= count; i++) arcs.push(arcs[i - 1] + length(minus(point(i), point(i - 1))));
+  const tangents = arcs.map((_, i) => bisector(point(i + count - 1), point(i), point(i + 1)));
+  const sides = [];
+  for (let i = 0; i <= count; i++) sides.push(acrossTo(tangents[i], i > 0 ? sides[i - 1] : null));
+  // Once round, the sides are turned against the first: each takes its share of that.
+  const twist = Math.atan2(dot(cross(sides[count], sides[0]), tangents[0]), dot(sides[count], sides[0]));
+  const start = rings.vertexCount;
+  for (let i = 0; i < count; i++) {
+    const angle = (twist * arcs[i]) / (arcs[count] || 1);
+    const beside = cross(tangents[i], sides[i]);
+    const side = sides[i].map((x, axis) => Math.cos(angle) * x + Math.sin(angle) * beside[axis]);
+    rings.add(point(i), { tangent: tangents[i], side, other: cross(tangents[i], side) }, 1, 0, i === 0, first + i);
+  }
+  rings.join(rings.vertexCount - SIDE_COUNT, start);
+}
+
 // Colours of the vertices, from steps of values at the points of the lines.
 function colorTubes(geometry, steps, scale, missing) {
   const { points } = geometry.userData;
@@ -108,8 +132,12 @@ function leans(i, count) {
 }
 
 function tangentAt(point, i, count) {
-  const arriving = unit(minus(point(i), point(Math.max(i - 1, 0))));
-  const leaving = unit(minus(point(Math.min(i + 1, count - 1)), point(i)));
+  return bisector(point(Math.max(i - 1, 0)), point(i), point(Math.min(i + 1, count - 1)));
+}
+
+function bisector(before, here, after) {
+  const arriving = unit(minus(here, before));
+  const leaving = unit(minus(after, here));
   const sum = arriving.map((x, axis) => x + leaving[axis]);
   // A line that goes back the way it came has no direction between both.
   if (length(sum) > 1e-6) return unit(sum);

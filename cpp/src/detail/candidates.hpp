@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "detail/trajectories.hpp"
+
+namespace pectinate::detail {
+
+/// Trajectories, stored as chords, and a heap of the pieces of them that may still be placed, longest first.
+class Candidates {
+ public:
+  /// Pieces shorter than `minimum_length` are none.
+  Candidates(std::size_t triangle_count, double minimum_length);
+
+  /// All chords, one trajectory after the other; who adds some makes a trajectory of them.
+  Chords& chords() { return chords_; }
+  const Chord& chord(std::int64_t index) const { return chords_[index]; }
+  std::span<const Chord> chords_of(const Stretch& stretch) const {
+    return {chords_.data() + stretch.first, chords_.data() + stretch.last};
+  }
+  double length(const Stretch& stretch) const;
+
+  const Trajectory& trajectory(std::int32_t index) const { return trajectories_[index]; }
+  /// The whole of it becomes a piece.
+  void add(const Trajectory& trajectory);
+
+  std::size_t piece_count() const { return heap_.size(); }
+  /// Puts a stretch of known length back into the heap.
+  void push(const Stretch& stretch, double length, std::int32_t trajectory, bool is_self_free = false);
+  /// Takes the longest piece out; there must be one.
+  Piece pop();
+  /// Would a stretch of this length come first?
+  bool is_first(double length, std::int32_t trajectory) const;
+
+  /// Is there little room for more chords? Then those that no piece holds can be dropped, except where pieces were cut
+  /// off. Trajectories get other numbers and chords other places; the order of pieces stays.
+  bool are_many() const { return chords_.size() > most_chords_ / 8 * 7; }
+  void drop_dead_chords();
+
+ private:
+  void prefetch_next() const;
+
+  double minimum_length_;
+  Chords chords_;
+  std::vector<Trajectory> trajectories_;
+  std::vector<Piece> heap_;
+  std::size_t most_chords_;
+};
+
+}  // namespace pectinate::detail

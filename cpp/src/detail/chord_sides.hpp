@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "detail/sheet.hpp"
+#include "detail/trajectories.hpp"
+
+namespace pectinate::detail {
+
+/// The side other than low-high that a chord crosses.
+inline Role short_side(const Sheet& sheet, const Chord& chord) {
+  return exit_role(sheet.crossings[chord.triangle()], low_high, chord.coordinate);
+}
+inline Role exit_side(const Sheet& sheet, const Chord& chord) {
+  return chord.leaves_through_low_high() ? low_high : short_side(sheet, chord);
+}
+inline Role entry_side(const Sheet& sheet, const Chord& chord) {
+  return chord.leaves_through_low_high() ? short_side(sheet, chord) : low_high;
+}
+
+inline Vector point_on(const Sheet& sheet, const Chord& chord, Role side) {
+  return sheet.point(chord.triangle(), side, chord.coordinate);
+}
+
+/// Weights of a mesh triangle's corners at a point so far along a side.
+inline Vec3 weights_on_side(const TriangleCrossings& crossings, Role side, double along) {
+  const int middle = crossings.middle, low = (middle + 1) % 3, high = (middle + 2) % 3;
+  Vec3 weights{0, 0, 0};
+  weights[side == middle_high ? middle : low] = 1 - along;
+  weights[side == low_middle ? middle : high] = along;
+  return weights;
+}
+
+/// The same in the chord's mesh triangle at its end on a side.
+inline Vec3 weights_on_side(const Sheet& sheet, const Chord& chord, Role side) {
+  const auto& crossings = sheet.crossings[chord.triangle()];
+  return weights_on_side(crossings, side, side_position(crossings, side, chord.coordinate));
+}
+
+/// The same in the last triangle of a closed line, at the point where its first chord begins.
+inline Vec3 weights_at_joint(const Sheet& sheet, const Chord& first, const Chord& last) {
+  const double position = edge_position(sheet.crossings[first.triangle()], entry_side(sheet, first), first.coordinate);
+  const auto& crossings = sheet.crossings[last.triangle()];
+  const Role side = exit_side(sheet, last);
+  return weights_on_side(crossings, side, crossings.is_reversed(side) ? 1 - position : position);
+}
+
+/// The same at all points of a line, in the triangle of the chord after it, or of the last one.
+inline std::vector<Vec3> weights_along(const Sheet& sheet, std::span<const Chord> chords, bool is_closed) {
+  std::vector<Vec3> weights;
+  for (const auto& chord : chords) weights.push_back(weights_on_side(sheet, chord, entry_side(sheet, chord)));
+  const auto& last = chords.back();
+  weights.push_back(is_closed ? weights_at_joint(sheet, chords.front(), last)
+                              : weights_on_side(sheet, last, exit_side(sheet, last)));
+  return weights;
+}
+
+}  // namespace pectinate::detail
