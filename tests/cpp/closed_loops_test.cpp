@@ -117,7 +117,7 @@ TEST_CASE("closed loops: round a cylinder every line closes, as long as its poly
     CHECK(placement.statistics.streamline_count >= std::floor(6 / separation) - 1);
     for (const double length : placement.lengths) CHECK(length == doctest::Approx(circumference).epsilon(1e-9));
     for (const auto& segment : segments_of(placement)) CHECK(std::abs(segment.start.z() - segment.end.z()) < 3e-8);
-    check_complete(mesh, field, placement, separation);
+    check_complete(mesh, field, placement);
     check_rings(mesh, placement);
   }
   // From 4 d_sep on a ring is a streamline.
@@ -229,7 +229,7 @@ TEST_CASE("closed loops: whatever the field, lines keep apart and fill the surfa
         auto options = closing(separation);
         options.seed_clearance = clearance;
         const auto placement = check_closed(mesh, field, options);
-        check_complete(mesh, field, placement, clearance * separation, 10);
+        check_complete(mesh, field, placement, 10);
         closed += closed_count(placement);
       }
     }
