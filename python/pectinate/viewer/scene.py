@@ -16,7 +16,7 @@ from pectinate.figure.parts import Marker, Part, nearest_parts, normal_at, used_
 from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import FOLD_SIZE
 from pectinate.figure.polylines import Lines, resampled, values_at
-from pectinate.figure.shading import Style, light_settings
+from pectinate.figure.shading import Style, fold_losses, light_settings
 from pectinate.figure.triangles import Triangles
 from pectinate.figure.values import (
     CategoryScale,
@@ -212,6 +212,8 @@ def _style(style: Style) -> dict[str, Any]:
         "background_color": style.background_color,
         "ink_color": [channel / 255 for channel in ink_color(style)],
         "tube_gloss": style.tube_gloss,
-        "fold_darkness": style.fold_darkness,
+        "shadow_color": style.shadow_color,
+        "fold_losses": fold_losses(style, shows_values=False),
+        "value_fold_losses": fold_losses(style, shows_values=True),
         "edge_darkness": style.edge_darkness,
     }
