@@ -19,6 +19,7 @@ from PIL import Image
 import pectinate
 from pectinate.figure import Style, View, render_view
 from pectinate.figure.frame import Frame, extent, fitting_scale, middle
+from pectinate.placement import DRAWN_TUBE_HEIGHT
 from picture_orientation import LEAST_COHERENCE, Scales, luminance, read_orientation
 from projected_field import ProjectedField, project_field
 from rival_pictures import Fibres, draw_glyphs, draw_line_integral_convolution
@@ -125,15 +126,17 @@ def placement(model: pectinate.Model, separation: float) -> pectinate.Placement:
 def zebra(
     radius: float | None = None,
     taper: float | None = None,
+    height: float = DRAWN_TUBE_HEIGHT,
     style: Style = Style(),  # noqa: B008  (immutable)
     separation: float = SEPARATION,
 ) -> Draw:
-    """Our picture; radius and taper length in d_sep, by default those of `Placement.tubes`."""
+    """Our picture; radius and taper length in d_sep, by default those of `Placement.figure`."""
 
     def draw(scene: Scene) -> NDArray[np.uint8]:
         tubes = placement(scene.model, separation).tubes(
             radius=None if radius is None else radius * separation,
             taper_length=None if taper is None else taper * separation,
+            height=height,
         )
         mesh, frame = scene.model.mesh, scene.frame
         return render_view(
@@ -233,6 +236,12 @@ def tapers(_: Path | None) -> str:
     return _sweep("taper / d_sep", [(f"{value:g}", zebra(taper=value)) for value in values])
 
 
+def heights(_: Path | None) -> str:
+    """Height of tubes over their width."""
+    values = (0.05, 0.1, 0.2, 0.3, 0.5, 1.0)
+    return _sweep("height / width", [(f"{value:g}", zebra(height=value)) for value in values])
+
+
 def contrasts(_: Path | None) -> str:
     """Colours and light."""
     style = Style()
@@ -291,6 +300,7 @@ PARTS: dict[str, tuple[str, Callable[[Path | None], str]]] = {
     "glyphs": ("Which arrows and strokes", glyph_sizes),
     "radius": ("Tube radius", radii),
     "taper": ("Taper", tapers),
+    "height": ("Height of tubes", heights),
     "contrast": ("Contrast", contrasts),
     "separation": ("Size of the picture", separations),
 }

@@ -70,6 +70,12 @@ def test_tube_options_reach_the_tubes(square, tmp_path):
         assert main(words) == ExitCode.DONE
     faces = {sides: (tmp_path / f"{sides}.obj").read_text().count("\nf ") for sides in (3, 5)}
     assert faces[3] < faces[5]
+    flat = tmp_path / "flat.ply"
+    assert main(["place", str(square), "--quiet", "--tubes", str(flat), "--tube-height", "0.25"]) == ExitCode.DONE
+    # The square lies in a plane; its tubes are round unless told otherwise.
+    assert main(["place", str(square), "--quiet", "--tubes", str(tmp_path / "round.ply")]) == ExitCode.DONE
+    low, high = (np.ptp(pectinate.load(file).mesh.vertices[:, 2]) for file in (flat, tmp_path / "round.ply"))
+    assert low == pytest.approx(0.25 * high, rel=1e-5)
 
 
 def test_units_and_field_reach_the_loader(square, capsys):
@@ -142,6 +148,7 @@ def test_demo_makes_both_atria_inside_and_outside(tmp_path, capsys):
         (["place", "SQUARE", "--tubes", "FOLDER/r.npz"], ExitCode.USAGE, "r.npz"),
         (["place", "SQUARE", "--figure", "FOLDER/f.png", "--views", "sideways"], ExitCode.USAGE, "sideways"),
         (["place", "SQUARE", "--tubes", "FOLDER/t.ply", "--tube-sides", "2"], ExitCode.USAGE, "--tube-sides"),
+        (["place", "SQUARE", "--figure", "FOLDER/f.png", "--tube-height", "2"], ExitCode.USAGE, "--tube-height is 2"),
         (["place", "FOLDER/none.elem"], ExitCode.REJECTED, "none"),
         (["place", "SQUARE", "--field", "FOLDER/none.lon"], ExitCode.REJECTED, "none"),
         (["place", "FOLDER"], ExitCode.REJECTED, "FOLDER"),

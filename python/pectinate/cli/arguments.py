@@ -23,7 +23,7 @@ from pectinate.cli.shared_arguments import (
     seed,
     whole,
 )
-from pectinate.placement import DEFAULTS
+from pectinate.placement import DEFAULTS, DRAWN_TUBE_HEIGHT
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -166,6 +166,8 @@ def _add_outputs(parser: argparse.ArgumentParser) -> None:
     add_views(group)
     _add_tubes(group)
     group.add_argument("--tube-sides", dest="side_count", type=whole, metavar="N", help="3 to 12")
+    words = f"of tubes over their width, at most 1: by default {DRAWN_TUBE_HEIGHT:g} in pictures, 1 (round) in files"
+    group.add_argument("--tube-height", type=float, metavar="SHARE", help=words)
 
 
 def _add_tubes(group: argparse._ActionsContainer) -> None:

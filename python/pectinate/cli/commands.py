@@ -26,8 +26,13 @@ from pectinate.viewer.page import SUFFIXES as PAGE_SUFFIXES
 _TUBE_SUFFIXES = frozenset({".ply", ".obj", ".glb"})
 _SUFFIXES = frozenset({".npz", ".vtp", *PAGE_SUFFIXES}) | _TUBE_SUFFIXES
 # The keywords of the library by argument, where they are given.
-_TUBE_OPTIONS = {"tube_radius": "radius", "taper_length": "taper_length", "side_count": "side_count"}
-_FIGURE_OPTIONS = {name: name for name in ("views", "tube_radius", "taper_length", "side_count")}
+_TUBE_OPTIONS = {
+    "tube_radius": "radius",
+    "taper_length": "taper_length",
+    "side_count": "side_count",
+    "tube_height": "height",
+}
+_FIGURE_OPTIONS = {name: name for name in ("views", "tube_radius", "taper_length", "side_count", "tube_height")}
 _PAGE_OPTIONS = {name: name for name in ("views", "tube_radius", "taper_length")}
 
 
