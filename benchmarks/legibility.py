@@ -253,12 +253,14 @@ def contrasts(_: Path | None) -> str:
         "tubes 0.6": replace(style, tube_color=(0.6, 0.6, 0.6)),
         "white tubes on dark": replace(style, tube_color=(0.95, 0.95, 0.95), surface_color=(0.25, 0.22, 0.2)),
         "gloss 0": replace(style, tube_gloss=0.0),
+        "gloss 0.2": replace(style, tube_gloss=0.2),
         "folds 0": replace(style, fold_darkness=0.0),
-        "folds 0.45": replace(style, fold_darkness=0.45),
+        "folds 0.6": replace(style, fold_darkness=0.6),
         "edges 0": replace(style, edge_darkness=0.0),
         "edges 0.7": replace(style, edge_darkness=0.7),
-        "gloss, folds, edges 0": replace(style, tube_gloss=0.0, fold_darkness=0.0, edge_darkness=0.0),
-        "tubes 0.1, folds 0.45": replace(style, tube_color=(0.1, 0.1, 0.1), fold_darkness=0.45),
+        "shadows 0": replace(style, shadow_color=(0.0, 0.0, 0.0)),
+        "shadows 0.5": replace(style, shadow_color=(0.5, 0.5, 0.5)),
+        "no shadows": replace(style, shadow_color=(1.0, 1.0, 1.0), tube_gloss=0.0),
     }
     return _sweep("colours and light", [(name, zebra(style=some)) for name, some in styles.items()])
 
