@@ -304,6 +304,21 @@ def test_view_shows_values_and_tracts(tmp_path: Path) -> None:
     assert '"contours":{' in html
 
 
+def test_view_shows_values_on_tubes(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    vertices, triangles = meshes.grid(6, 6)
+    model = pectinate.load((vertices, triangles, np.tile([1.0, 0, 0], (len(triangles), 1))))
+    surface, values, page = tmp_path / "a.pts", tmp_path / "row.npy", tmp_path / "page.html"
+    pectinate.save_surface(model, surface)
+    np.save(values, np.arange(len(triangles)))
+    assert main([str(word) for word in ("view", surface, "--tube-values", values, "--out", page, "--quiet")]) == 0
+    placement = pectinate.place_streamlines(pectinate.load(surface))
+    expected = placement.page(name="a", title="a", tube_values={"row": np.arange(len(triangles))}, notes=[])
+    scales = re.findall(r'"tube_scales":\[.*?\]', page.read_text(encoding="utf-8"))
+    assert scales == re.findall(r'"tube_scales":\[.*?\]', expected.html)
+    assert '"row"' in scales[0]
+
+
 def test_view_refuses_before_it_works(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     values = tmp_path / "v.npy"
     values.write_text("no array")
@@ -316,6 +331,8 @@ def test_view_refuses_before_it_works(tmp_path: Path, capsys: pytest.CaptureFixt
         (["a.ply", "--out", "page.png"], ExitCode.USAGE, "page.png"),
         (["a.ply", "b.ply", "--values", str(values)], ExitCode.USAGE, "one MESH"),
         (["a.ply", "--values", "v.txt"], ExitCode.USAGE, "v.txt"),
+        (["a.ply", "--tube-values", "v.txt"], ExitCode.USAGE, "v.txt"),
+        ([str(tmp_path / "a.ply"), "--tube-values", str(heights)], ExitCode.USAGE, "has no fibres"),
         (["a.ply", "--contours", "1"], ExitCode.USAGE, "--contours serves --values alone"),
         ([str(tmp_path / "a.ply"), "--values", str(tags), "--contours", "1"], ExitCode.USAGE, "one value per vertex"),
         ([str(tmp_path / "a.ply"), "--values", str(heights), "--contours", "-1"], ExitCode.USAGE, "-1"),
