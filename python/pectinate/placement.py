@@ -349,8 +349,7 @@ class Placement:
         name
             Of the part.
         tube_radius, taper_length, side_count, tube_height
-            As `radius`, `taper_length`, `side_count` and `height` of `tubes`. A page has a slider for the radius, and
-            its tubes are round.
+            As `radius`, `taper_length`, `side_count` and `height` of `tubes`; a page has a slider for the radius.
         tube_values
             Numbers that colour the tubes, as in `figure`; several by name.
         options
@@ -372,6 +371,8 @@ class Placement:
             _core.default_taper_length if taper_length is None else taper_length,
             make_tubes,
             {name: self._at_points(values) for name, values in named_values(tube_values).items()},
+            tube_height,
+            self.mesh.triangle_normals[self.point_triangles],
         )
         return replace(self.model.part(name, **options), streamlines=drawn)
 

@@ -15,7 +15,7 @@ from pectinate.figure.frame import MARGIN
 from pectinate.figure.parts import Marker, Part, nearest_parts, normal_at, used_vertices
 from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import FOLD_SIZE
-from pectinate.figure.polylines import Lines, resampled, values_at
+from pectinate.figure.polylines import Lines, normals_at, resampled, values_at
 from pectinate.figure.shading import Style, fold_losses, light_settings
 from pectinate.figure.triangles import Triangles
 from pectinate.figure.values import (
@@ -33,6 +33,7 @@ from pectinate.viewer.encoding import (
     ArrayPack,
     coherent_order,
     first_use_codes,
+    quantized_directions,
     quantized_points,
     quantized_values,
 )
@@ -124,6 +125,7 @@ def _lines(lines: Lines | None, part: Part, scales: _Scales, pack: ArrayPack) ->
         return None
     points, places, counts = resampled(lines)
     positions, place = quantized_points(part.placed(points))
+    normals = normals_at(lines, places)
     values = []
     for name, (scale, _) in scales.items():
         if name in lines.values:
@@ -135,6 +137,10 @@ def _lines(lines: Lines | None, part: Part, scales: _Scales, pack: ArrayPack) ->
         "counts": pack.add(counts.astype(np.uint32)),
         "radius": lines.radius,
         "taper_length": lines.taper_length,
+        "height": lines.height,
+        "normals": None
+        if normals is None
+        else pack.add(quantized_directions(normals @ np.asarray(part.rotation).T), 1),
         "values": values,
     }
 

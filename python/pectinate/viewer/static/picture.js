@@ -39,6 +39,7 @@ class Picture {
   addTubes(geometry, color, gloss, radius, calm = false) {
     return this.add(geometry, material(TUBE_VERTEX, TUBE_FRAGMENT, {
       ...this.uniforms, tubeColor: { value: color }, tubeGloss: { value: gloss }, radius: { value: radius },
+      height: { value: geometry.userData.height },
       showsValues: { value: false }, calm: { value: calm },
     }, THREE.FrontSide, this.defines()), [0]);
   }

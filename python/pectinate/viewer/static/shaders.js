@@ -83,21 +83,23 @@ const SURFACE_FRAGMENT = `${LIGHT_FUNCTIONS}${FOLD_FUNCTIONS}
     gl_FragColor = vec4(clamp(color, 0.0, 1.0) * foldShadow(), 1.0);
   }`;
 
-// A tube's vertex is its centre and a unit vector away from it; the radius comes last. Its light is computed at the
+// A tube's vertex is its centre and a unit vector away from it, of which the part along `up` becomes shorter in flat
+// tubes, and that of the normal longer; the radius comes last. Its light is computed at the
 // vertices, as in the pictures: highlights on dark tubes become broad and calm.
 const TUBE_VERTEX = `${LIGHT_FUNCTIONS}
-  attribute vec3 offset, valueColor;
+  attribute vec3 offset, up, valueColor;
   attribute float thickness;
   uniform bool showsValues, calm;
-  uniform float radius;
+  uniform float radius, height;
   uniform vec3 tubeColor;
   uniform float tubeGloss;
   varying vec3 vColor;
   void main() {
-    vec3 n = normalize(normalMatrix * offset);
+    vec3 raised = dot(offset, up) * up;
+    vec3 n = normalize(normalMatrix * (offset + (1.0 / height - 1.0) * raised));
     if (showsValues || calm) vColor = (showsValues ? valueColor : tubeColor) * valueLight(n, 0.0);
     else vColor = clamp(tubeColor * light(n, 0.0) + tubeGloss * gloss(n), 0.0, 1.0);
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(position + radius * thickness * offset, 1.0);
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position + radius * thickness * (offset - (1.0 - height) * raised), 1.0);
   }`;
 
 const TUBE_FRAGMENT = `${FOLD_FUNCTIONS}
