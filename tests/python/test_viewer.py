@@ -320,7 +320,8 @@ def test_view_writes_a_page_of_several_surfaces(tmp_path: Path, capsys: pytest.C
     page = tmp_path / "page.html"
     words = ["view", tmp_path / "fibres.pts", tmp_path / "bare.ply", "--out", page, "--units", "mm", "--json"]
     pectinate.save_surface(pectinate.load((vertices, triangles, along)), tmp_path / "fibres.pts", units="mm")
-    assert main([*map(str, words), "--separation", "2", "--tube-radius", "0.3"]) == ExitCode.DONE
+    words += ["--separation", "2", "--tube-radius", "0.3", "--tube-height", "0.6"]
+    assert main([str(word) for word in words]) == ExitCode.DONE
     report = json.loads(capsys.readouterr().out)
     assert report["files"] == [str(page)]
     assert [surface["name"] for surface in report["surfaces"]] == ["fibres", "bare"]
@@ -329,6 +330,7 @@ def test_view_writes_a_page_of_several_surfaces(tmp_path: Path, capsys: pytest.C
     html = page.read_text(encoding="utf-8")
     assert len(html.encode()) == report["bytes"]
     assert '"radius":0.3' in html
+    assert '"height":0.6' in html
 
 
 def test_view_shows_values_and_tracts(tmp_path: Path) -> None:

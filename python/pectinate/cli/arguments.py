@@ -159,10 +159,10 @@ def _add_outputs(parser: argparse.ArgumentParser) -> None:
     add_views(group)
     _add_tubes(group)
     group.add_argument("--tube-sides", dest="side_count", type=whole, metavar="N", help="3 to 12")
-    words = f"of tubes over their width, at most 1: by default {DRAWN_TUBE_HEIGHT:g} in pictures, 1 (round) in files"
-    group.add_argument("--tube-height", type=float, metavar="SHARE", help=words)
 
 
 def _add_tubes(group: argparse._ActionsContainer) -> None:
     group.add_argument("--tube-radius", type=float, metavar="MM", help="by default in proportion to the separation")
     group.add_argument("--taper-length", type=float, metavar="MM", help="over which tubes grow thin at their ends")
+    words = f"over their width, at most 1: by default {DRAWN_TUBE_HEIGHT:g} in pictures and pages, 1 (round) in files"
+    group.add_argument("--tube-height", type=float, metavar="SHARE", help=words)

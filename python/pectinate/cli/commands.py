@@ -35,7 +35,7 @@ _TUBE_OPTIONS = {
     "tube_height": "height",
 }
 _FIGURE_OPTIONS = {name: name for name in ("views", "tube_radius", "taper_length", "side_count", "tube_height")}
-_PAGE_OPTIONS = {name: name for name in ("views", "tube_radius", "taper_length")}
+_PAGE_OPTIONS = {name: name for name in ("views", "tube_radius", "taper_length", "tube_height")}
 
 
 def place(arguments: argparse.Namespace) -> None:

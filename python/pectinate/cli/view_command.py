@@ -15,7 +15,7 @@ from pectinate.placement import DEFAULTS
 from pectinate.viewer import Page, Part
 from pectinate.viewer.page import SUFFIXES
 
-_TUBES = {name: name for name in ("tube_radius", "taper_length")}
+_TUBES = {name: name for name in ("tube_radius", "taper_length", "tube_height")}
 
 
 def view(arguments: argparse.Namespace) -> None:
