@@ -291,7 +291,14 @@ def test_flat_lines_have_unit_normals_and_round_ones_none() -> None:
     between = normals_at(flat, np.array([0.5]))
     np.testing.assert_allclose(between, np.array([[0, 3, 2]]) / np.sqrt(13))
     assert normals_at(Lines(points, offsets, 0.1, normals=normals), np.array([0.0])) is None
-    for height, some in ((0.0, normals), (1.1, normals), (np.nan, normals), (0.5, None), (0.5, normals[:2])):
+    for height, some in (
+        (0.0, normals),
+        (1.1, normals),
+        (np.nan, normals),
+        (0.5, None),
+        (1.0, normals[:2]),
+        (0.5, np.nan * normals),
+    ):
         with pytest.raises(InvalidOption, match=r"height|normal"):
             Lines(points, offsets, 0.1, height=height, normals=some)
 

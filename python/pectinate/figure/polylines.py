@@ -83,8 +83,12 @@ class Lines:
             raise InvalidOption(f"taper_length is {self.taper_length}, but must be finite and not negative")
         if not 0 < self.height <= 1:
             raise InvalidOption(f"tube height is {self.height} of the width, but must be above 0 and at most 1")
-        if self.height < 1 and (self.normals is None or self.normals.shape != self.points.shape):
-            raise InvalidOption("lines: flat tubes need a normal of the surface per point, (N, 3)")
+        if self.height < 1 and self.normals is None:
+            raise InvalidOption("lines: flat tubes need normals of the surface, (N, 3)")
+        if self.normals is not None and not (
+            self.normals.shape == self.points.shape and np.isfinite(self.normals).all()
+        ):
+            raise InvalidOption(f"lines: normals of shape {self.normals.shape}; give finite numbers, one row per point")
         if self.points.ndim != 2 or self.points.shape[1] != 3 or not np.isfinite(self.points).all():  # noqa: PLR2004
             raise InvalidOption(f"lines: points of shape {self.points.shape}; give finite numbers, (N, 3)")
         ends = (0, len(self.points))
