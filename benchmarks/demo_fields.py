@@ -12,6 +12,7 @@ import numpy as np
 import pectinate
 from pectinate import _core
 from pectinate.figure import Layer, line_tubes
+from pectinate.placement import DRAWN_TUBE_HEIGHT
 
 TRACTS_FILE = Path(__file__).with_name("demo_tracts.json")
 BLACK = (0.08, 0.07, 0.07)
@@ -67,5 +68,5 @@ class DemoFields:
 
 def streamline_layer(placement: pectinate.Placement, radius: float, color: tuple[float, float, float]) -> Layer:
     """Streamlines as tubes of a radius in mm and a colour."""
-    tubes = placement.tubes(radius=radius)
+    tubes = placement.tubes(radius=radius, height=DRAWN_TUBE_HEIGHT)
     return Layer((tubes.vertices, tubes.triangles), color)

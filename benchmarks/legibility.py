@@ -19,6 +19,7 @@ from PIL import Image
 import pectinate
 from pectinate.figure import Style, View, render_view
 from pectinate.figure.frame import Frame, extent, fitting_scale, middle
+from pectinate.placement import DRAWN_TUBE_HEIGHT
 from picture_orientation import LEAST_COHERENCE, Scales, luminance, read_orientation
 from projected_field import ProjectedField, project_field
 from rival_pictures import Fibres, draw_glyphs, draw_line_integral_convolution
@@ -125,15 +126,17 @@ def placement(model: pectinate.Model, separation: float) -> pectinate.Placement:
 def zebra(
     radius: float | None = None,
     taper: float | None = None,
+    height: float = DRAWN_TUBE_HEIGHT,
     style: Style = Style(),  # noqa: B008  (immutable)
     separation: float = SEPARATION,
 ) -> Draw:
-    """Our picture; radius and taper length in d_sep, by default those of `Placement.tubes`."""
+    """Our picture; radius and taper length in d_sep, by default those of `Placement.figure`."""
 
     def draw(scene: Scene) -> NDArray[np.uint8]:
         tubes = placement(scene.model, separation).tubes(
             radius=None if radius is None else radius * separation,
             taper_length=None if taper is None else taper * separation,
+            height=height,
         )
         mesh, frame = scene.model.mesh, scene.frame
         return render_view(
@@ -233,6 +236,12 @@ def tapers(_: Path | None) -> str:
     return _sweep("taper / d_sep", [(f"{value:g}", zebra(taper=value)) for value in values])
 
 
+def heights(_: Path | None) -> str:
+    """Height of tubes over their width."""
+    values = (0.05, 0.1, 0.2, 0.3, 0.5, 1.0)
+    return _sweep("height / width", [(f"{value:g}", zebra(height=value)) for value in values])
+
+
 def contrasts(_: Path | None) -> str:
     """Colours and light."""
     style = Style()
@@ -244,12 +253,14 @@ def contrasts(_: Path | None) -> str:
         "tubes 0.6": replace(style, tube_color=(0.6, 0.6, 0.6)),
         "white tubes on dark": replace(style, tube_color=(0.95, 0.95, 0.95), surface_color=(0.25, 0.22, 0.2)),
         "gloss 0": replace(style, tube_gloss=0.0),
+        "gloss 0.2": replace(style, tube_gloss=0.2),
         "folds 0": replace(style, fold_darkness=0.0),
-        "folds 0.45": replace(style, fold_darkness=0.45),
+        "folds 0.6": replace(style, fold_darkness=0.6),
         "edges 0": replace(style, edge_darkness=0.0),
         "edges 0.7": replace(style, edge_darkness=0.7),
-        "gloss, folds, edges 0": replace(style, tube_gloss=0.0, fold_darkness=0.0, edge_darkness=0.0),
-        "tubes 0.1, folds 0.45": replace(style, tube_color=(0.1, 0.1, 0.1), fold_darkness=0.45),
+        "shadows 0": replace(style, shadow_color=(0.0, 0.0, 0.0)),
+        "shadows 0.5": replace(style, shadow_color=(0.5, 0.5, 0.5)),
+        "no shadows": replace(style, shadow_color=(1.0, 1.0, 1.0), tube_gloss=0.0),
     }
     return _sweep("colours and light", [(name, zebra(style=some)) for name, some in styles.items()])
 
@@ -291,6 +302,7 @@ PARTS: dict[str, tuple[str, Callable[[Path | None], str]]] = {
     "glyphs": ("Which arrows and strokes", glyph_sizes),
     "radius": ("Tube radius", radii),
     "taper": ("Taper", tapers),
+    "height": ("Height of tubes", heights),
     "contrast": ("Contrast", contrasts),
     "separation": ("Size of the picture", separations),
 }

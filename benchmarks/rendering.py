@@ -51,7 +51,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def placement_of(model: pectinate.Model) -> pectinate.Placement:
     """Default placement, at the separation that gives about `STREAMLINES` streamlines."""
-    candidates = [pectinate.place_streamlines(model, separation_distance=d) for d in (0.8, 1.0, 1.1, 1.2, 1.4)]
+    candidates = [pectinate.place_streamlines(model, separation_distance=d) for d in (0.65, 0.7, 0.75, 0.8)]
     return min(candidates, key=lambda placement: abs(len(placement) - STREAMLINES))
 
 

@@ -21,12 +21,14 @@ void bind_tubes(py::module_& module) {
   module.attr("default_taper_length") = defaults.taper_length;
   module.def(
       "make_tubes",
-      [](const SurfaceMesh& mesh, const Placement& placement, double radius, double taper_length, int side_count) {
+      [](const SurfaceMesh& mesh, const Placement& placement, double radius, double taper_length, int side_count,
+         double height) {
         const py::gil_scoped_release release;
-        return make_tubes(mesh, placement, {radius, taper_length, side_count});
+        return make_tubes(mesh, placement, {radius, taper_length, side_count, height});
       },
       py::arg("mesh"), py::arg("placement"), py::kw_only(), py::arg("radius") = defaults.radius,
-      py::arg("taper_length") = defaults.taper_length, py::arg("side_count") = defaults.side_count);
+      py::arg("taper_length") = defaults.taper_length, py::arg("side_count") = defaults.side_count,
+      py::arg("height") = defaults.height);
 }
 
 }  // namespace pectinate::bindings

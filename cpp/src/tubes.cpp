@@ -44,6 +44,10 @@ void check(const TubeOptions& options) {
   if (options.side_count < 3 || options.side_count > 12) {
     throw InvalidOption("side_count is " + std::to_string(options.side_count) + ", but must be in [3, 12]");
   }
+  if (!(options.height > 0 && options.height <= 1)) {
+    throw InvalidOption("tube height is " + detail::number_text(options.height) +
+                        " of the width, but must be above 0 and at most 1; 1 is round");
+  }
 }
 
 /// Equation (3) of the paper; blunt where the taper length is 0.
@@ -195,7 +199,8 @@ class TubeBuilder {
     const Vector side = station.tangent.cross(station.normal);
     for (int k = 0; k < options_.side_count; ++k) {
       const double angle = 2 * std::numbers::pi * k / options_.side_count;
-      add_vertex(station.place + radius * (std::cos(angle) * station.normal + std::sin(angle) * side), station.point);
+      const Vector up = options_.height * std::cos(angle) * station.normal;
+      add_vertex(station.place + radius * (up + std::sin(angle) * side), station.point);
     }
     return first;
   }

@@ -356,7 +356,13 @@ def place_streamlines(
 default_taper_length: float
 
 def make_tubes(
-    mesh: SurfaceMesh, placement: Placement, *, radius: float = ..., taper_length: float = ..., side_count: int = ...
+    mesh: SurfaceMesh,
+    placement: Placement,
+    *,
+    radius: float = ...,
+    taper_length: float = ...,
+    side_count: int = ...,
+    height: float = ...,
 ) -> Tubes: ...
 def make_demo_atrium(*, edge_length: float = ...) -> DemoAtrium: ...
 def make_atrial_surface(

@@ -203,6 +203,30 @@ TEST_CASE("tubes: rings of a straight line are regular polygons across it, exact
   }
 }
 
+TEST_CASE("tubes: of less height than width they are the round ones, flattened towards the surface") {
+  const auto flat_mesh = one_triangle().mesh(), ball = sphere(3, 2).mesh();
+  const auto line = drawn({straight(40, 0.25)}), around = placed(ball, smooth_field(ball), 0.4);
+  for (const double height : {1e-3, 0.3, 0.7}) {
+    for (const auto& [mesh, placement] : {std::pair(&flat_mesh, &line), std::pair(&ball, &around)}) {
+      const auto round = make_tubes(*mesh, *placement, {0.1, 0.5, 6});
+      const auto flat = make_tubes(*mesh, *placement, {0.1, 0.5, 6, height});
+      check_watertight(flat, placement->lengths.empty() ? 1 : placement->lengths.size());
+      CHECK(flat.triangles == round.triangles);
+      CHECK(flat.vertex_points == round.vertex_points);
+      for (std::size_t i = 0; i + 1 < placement->offsets.size(); ++i) {
+        const auto wide = rings_of(round, i, 6), low = rings_of(flat, i, 6);
+        for (std::size_t r = 0; r < wide.size(); ++r) {
+          const Vector middle = mean(wide[r]), up = wide[r][0] - middle;  // the first corner lies along the normal
+          for (int k = 0; k < 6; ++k) {
+            const Vector offset = wide[r][k] - middle, along = up * (offset.dot(up) / up.squaredNorm());
+            CHECK((low[r][k] - middle - (offset + (height - 1) * along)).norm() < 1e-13);
+          }
+        }
+      }
+    }
+  }
+}
+
 TEST_CASE("tubes: corners do not twist from ring to ring, not even where the surface changes sides") {
   for (const auto& soup : {sphere(3, 2), moebius_strip(40, 6)}) {
     const auto mesh = soup.mesh();
@@ -326,6 +350,7 @@ TEST_CASE("tubes: options out of range are refused") {
   for (const double radius : {0.0, -1.0, nan, infinity}) refused({radius});
   for (const double taper_length : {-1e-9, nan, infinity}) refused({0.1, taper_length});
   for (const int side_count : {2, 13, 0, -8}) refused({0.1, 1, side_count});
+  for (const double height : {0.0, -0.5, 1.001, nan, infinity}) refused({0.1, 1, 8, height});
 }
 
 }  // namespace pectinate::test

@@ -15,12 +15,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import pectinate
 from command_line import SIDE, check_error, run_json, write_lines
 from pectinate import _core
 from pectinate.cli import ExitCode, commands, main
 from pectinate.cli.progress import ProgressBar
+from pectinate.figure import SurfaceValues
 
 
 def test_place_writes_every_format_and_reports_it(square, tmp_path, capsys):
@@ -76,6 +78,44 @@ def test_tube_options_reach_the_tubes(square, tmp_path):
         assert main(words) == ExitCode.DONE
     faces = {sides: (tmp_path / f"{sides}.obj").read_text().count("\nf ") for sides in (3, 5)}
     assert faces[3] < faces[5]
+    flat = tmp_path / "flat.ply"
+    assert main(["place", str(square), "--quiet", "--tubes", str(flat), "--tube-height", "0.25"]) == ExitCode.DONE
+    # The square lies in a plane; its tubes are round unless told otherwise.
+    assert main(["place", str(square), "--quiet", "--tubes", str(tmp_path / "round.ply")]) == ExitCode.DONE
+    low, high = (np.ptp(pectinate.load(file).mesh.vertices[:, 2]) for file in (flat, tmp_path / "round.ply"))
+    assert low == pytest.approx(0.25 * high, rel=1e-5)
+
+
+@pytest.mark.usefixtures("opengl")
+def test_values_colour_the_picture_and_the_page(square, tmp_path):
+    pytest.importorskip("matplotlib")
+    model = pectinate.load(square)
+    heights, tags = model.mesh.vertices[:, 1], np.arange(len(model.mesh.triangles))
+    for name, array in (("height", heights), ("tag", tags)):
+        np.save(tmp_path / f"{name}.npy", array)
+    words = [
+        "place",
+        square,
+        "--quiet",
+        "--figure",
+        tmp_path / "f.png",
+        "--out",
+        tmp_path / "p.html",
+        "--views",
+        "left",
+    ]
+    words += ["--values", tmp_path / "height.npy", "--contours", "2", "--tube-values", tmp_path / "tag.npy"]
+    assert main([str(word) for word in words]) == ExitCode.DONE
+    expected = pectinate.place_streamlines(model).figure(
+        views=["left"],
+        surface_values=SurfaceValues(heights, label="height", contours=2),
+        tube_values=SurfaceValues(tags, label="tag"),
+    )
+    assert np.array_equal(np.asarray(Image.open(tmp_path / "f.png")), np.asarray(expected))
+    html = (tmp_path / "p.html").read_text(encoding="utf-8")
+    assert '"label":"height"' in html
+    assert '"label":"tag"' in html
+    assert '"contours":{' in html
 
 
 def test_units_and_field_reach_the_loader(square, capsys):
@@ -154,6 +194,16 @@ def test_demo_makes_both_atria_inside_and_outside(tmp_path, capsys):
         (["place", "SQUARE", "--tubes", "FOLDER/r.npz"], ExitCode.USAGE, "r.npz"),
         (["place", "SQUARE", "--figure", "FOLDER/f.png", "--views", "sideways"], ExitCode.USAGE, "sideways"),
         (["place", "SQUARE", "--tubes", "FOLDER/t.ply", "--tube-sides", "2"], ExitCode.USAGE, "--tube-sides"),
+        (["place", "SQUARE", "--figure", "FOLDER/f.png", "--tube-height", "2"], ExitCode.USAGE, "--tube-height is 2"),
+        (["place", "SQUARE", "--values", "v.npy"], ExitCode.USAGE, "--values: only pictures and pages have colours"),
+        (["place", "SQUARE", "--tube-values", "v.txt", "--figure", "FOLDER/f.png"], ExitCode.USAGE, "v.txt"),
+        (["place", "SQUARE", "--figure", "FOLDER/f.png", "--contours", "2"], ExitCode.USAGE, "--contours serves"),
+        (
+            ["place", "SQUARE", "--figure", "FOLDER/f.png", "--values", "a.npy", "--values", "b.npy"],
+            ExitCode.USAGE,
+            "a picture shows one of --values",
+        ),
+        (["place", "SQUARE", "--figure", "FOLDER/f.png", "--tube-values", "FOLDER/a.npy"], ExitCode.REJECTED, "a.npy"),
         (["place", "FOLDER/none.elem"], ExitCode.REJECTED, "none"),
         (["place", "SQUARE", "--field", "FOLDER/none.lon"], ExitCode.REJECTED, "none"),
         (["place", "FOLDER"], ExitCode.REJECTED, "FOLDER"),

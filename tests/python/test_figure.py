@@ -99,6 +99,37 @@ def test_back_faces_show_the_inside_colour_and_front_faces_do_not() -> None:
     assert front[centre].astype(int).sum() > inside[centre].astype(int).sum() + 60
 
 
+@pytest.mark.parametrize("shadow_color", [(0.9, 0.3, 0.6), (0.0, 0.0, 0.0), (1.0, 0.5, 1.0)])
+def test_shadows_leave_their_share_of_each_colour(shadow_color: tuple[float, float, float]) -> None:
+    style = Style(surface_color=(0.8, 0.9, 1.0), shadow_color=shadow_color, fold_darkness=0, edge_darkness=1)
+    picture = render_view(sphere(), size=SIZE, mm_per_pixel=SCALE, transparent=True, style=style)
+    lost = 1 - picture[picture[:, :, 3] == 255][:, :3] / (255 * np.array(style.surface_color))
+    most = 1 - np.array(shadow_color)
+    assert (lost <= most + 0.01).all()
+    assert (lost.max(axis=0) >= 0.8 * most).all()
+    # All channels are in the same light.
+    for a, b in ((0, 1), (1, 2)):
+        np.testing.assert_allclose(lost[:, a] * most[b], lost[:, b] * most[a], atol=0.01)
+
+
+@pytest.mark.parametrize("shadow_color", [(0.9, 0.3, 0.6), (0.0, 0.0, 0.0)])
+def test_folds_are_in_the_same_shadow(shadow_color: tuple[float, float, float]) -> None:
+    # A wall far behind a ball is the deepest of folds around it.
+    surface = joined(sphere(3), box((40, 0.1, 32), (0, 20, 0)))
+    bright, dark = (
+        render_view(
+            surface,
+            size=SIZE,
+            mm_per_pixel=SCALE,
+            style=Style(surface_color=(1, 1, 1), shadow_color=shadow_color, fold_darkness=darkness, edge_darkness=0),
+        )
+        for darkness in (0.0, 0.5)
+    )
+    left = dark.reshape(-1, 3) / np.maximum(bright.reshape(-1, 3), 1)
+    most = 0.5 * (1 - np.array(shadow_color))
+    np.testing.assert_allclose(1 - left.min(axis=0), most, atol=0.02)
+
+
 def test_tubes_are_dark_and_hide_what_is_behind_them() -> None:
     bar = box((10, 1, 1), (0, -11, 0))
     plain = render_view(sphere(), size=SIZE, mm_per_pixel=SCALE)

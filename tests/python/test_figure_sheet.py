@@ -21,9 +21,10 @@ from pectinate.errors import InvalidFile, InvalidMesh, InvalidOption
 from pectinate.figure import Lines, Style, SurfaceValues, View, draw_sheet, render_view, standard_view
 from pectinate.figure.frame import Frame
 from pectinate.figure.markers import place_discs
-from pectinate.figure.offscreen import Canvas, Stage, open_canvas
+from pectinate.figure.offscreen import Canvas, Patch, Stage, open_canvas
 from pectinate.figure.picture import TILE, draw_frame
 from pectinate.figure.shape import Drawing, check_drawing
+from pectinate.placement import DRAWN_TUBE_HEIGHT
 
 drawn = pytest.mark.usefixtures("opengl")
 
@@ -78,6 +79,19 @@ def test_tiles_do_not_show(transparent: bool, mm_per_pixel: float, tile: int) ->
     joints = np.arange(tile // 2, 420, tile // 2)
     beside = difference[:, np.concatenate([joints - 1, joints])]
     assert np.mean(beside > 1) < 2e-3
+
+
+@drawn
+def test_depths_are_those_of_the_place_in_the_pixel_that_the_canvas_names() -> None:
+    corners, triangles = np.array([[-5.0, -5, 0], [5, -5, 0], [5, 5, 0], [-5, 5, 0]]), np.array([[0, 1, 2], [0, 2, 3]])
+    corners[:, 2] = 0.3 * corners[:, 0] - 0.7 * corners[:, 1]
+    with open_canvas() as canvas:
+        stage = canvas.load([Patch(corners, triangles, np.ones((4, 3)))])
+        _, depth = canvas.draw(stage, (10, 10), 1.0)
+        right, down = canvas.depth_place()
+    rows, columns = np.indices(depth.shape)
+    x, y = columns + right - 5, 5 - rows - down
+    np.testing.assert_allclose(stage.nearest - depth, 0.3 * x - 0.7 * y, atol=1e-4)
 
 
 @drawn
@@ -137,7 +151,8 @@ def test_a_vertex_is_drawn_where_the_frame_says(seed: int) -> None:
         middle = np.array([(columns * cover).sum(), (rows * cover).sum()]) / cover.sum()
         assert np.abs(middle - pixel).max() < 0.2
     else:
-        assert cover[3:-3, 3:-3].sum() == 0
+        # The cube reaches not quite two pixels from its middle.
+        assert cover[5:-5, 5:-5].sum() == 0
 
 
 @drawn
@@ -254,7 +269,7 @@ def test_parts_have_colors_tracts_and_only_the_streamlines_that_are_asked_for() 
     placement = place_streamlines(datasets.demo_atrium(edge_length=4), separation_distance=8)
     options = {"size": SIZE, "scale_bar": False}
     bare, lined = (np.asarray(figure_sheet(Cell(x), **options)) for x in (placement.model, placement))
-    tubes = placement.tubes()
+    tubes = placement.tubes(height=DRAWN_TUBE_HEIGHT)
     mesh = placement.mesh
     old = draw_sheet(
         (mesh.vertices, mesh.triangles), (tubes.vertices, tubes.triangles), views="anterior", labels=False, **options

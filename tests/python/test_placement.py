@@ -585,7 +585,17 @@ def test_what_cannot_be_saved_is_refused(placement: Placement, tmp_path: Path) -
 
 
 @pytest.mark.parametrize(
-    "options", [{"radius": 0}, {"radius": np.nan}, {"taper_length": -1}, {"side_count": 2}, {"side_count": 13}]
+    "options",
+    [
+        {"radius": 0},
+        {"radius": np.nan},
+        {"taper_length": -1},
+        {"side_count": 2},
+        {"side_count": 13},
+        {"height": 0},
+        {"height": 1.01},
+        {"height": np.nan},
+    ],
 )
 def test_tube_options_out_of_range_are_refused(placement: Placement, options: dict[str, Any]) -> None:
     with pytest.raises(InvalidOption, match=next(iter(options))):

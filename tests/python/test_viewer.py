@@ -25,9 +25,16 @@ from pectinate import datasets, place_streamlines
 from pectinate.cli import ExitCode, main
 from pectinate.errors import InvalidFile, InvalidMesh, InvalidOption, MissingDependency
 from pectinate.figure import SurfaceValues
-from pectinate.figure.polylines import resampled
+from pectinate.figure.polylines import normals_at, resampled
 from pectinate.viewer import Lines, Marker, Page, Part
-from pectinate.viewer.encoding import NO_VALUE, coherent_order, first_use_codes, quantized_points, quantized_values
+from pectinate.viewer.encoding import (
+    NO_VALUE,
+    coherent_order,
+    first_use_codes,
+    quantized_directions,
+    quantized_points,
+    quantized_values,
+)
 from pectinate.viewer.scene import describe_scene
 from pectinate.viewer.three import three_js
 
@@ -269,6 +276,49 @@ def test_the_scene_of_no_streamlines_has_none() -> None:
     assert scene["parts"][0]["streamlines"] is None
 
 
+def test_directions_come_back_from_their_steps() -> None:
+    directions = np.random.default_rng(3).normal(size=(500, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    steps = quantized_directions(directions).view(np.int16) / 127
+    np.testing.assert_allclose(steps, directions, atol=0.5 / 127 + 1e-12)
+
+
+def test_flat_lines_have_unit_normals_and_round_ones_none() -> None:
+    points, offsets = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]]), np.array([0, 3])
+    normals = np.array([[0.0, 0, 2], [0, 3, 0], [0, 3, 0]])
+    flat = Lines(points, offsets, 0.1, height=0.5, normals=normals)
+    np.testing.assert_allclose(normals_at(flat, np.array([0.0, 1, 1.5])), [[0, 0, 1], [0, 1, 0], [0, 1, 0]])
+    between = normals_at(flat, np.array([0.5]))
+    np.testing.assert_allclose(between, np.array([[0, 3, 2]]) / np.sqrt(13))
+    assert normals_at(Lines(points, offsets, 0.1, normals=normals), np.array([0.0])) is None
+    for height, some in (
+        (0.0, normals),
+        (1.1, normals),
+        (np.nan, normals),
+        (0.5, None),
+        (1.0, normals[:2]),
+        (0.5, np.nan * normals),
+    ):
+        with pytest.raises(InvalidOption, match=r"height|normal"):
+            Lines(points, offsets, 0.1, height=height, normals=some)
+
+
+def test_a_page_has_the_height_of_the_tubes() -> None:
+    vertices, triangles = meshes.sphere(2, radius=5)
+    model = pectinate.load((vertices, triangles, np.cross(vertices[triangles].mean(axis=1), [0, 0, 1])))
+    placement = pectinate.place_streamlines(model, separation_distance=2.0)
+    for height in (0.3, 1.0):
+        part = placement.part(tube_height=height)
+        scene, _ = describe_scene([part], [], ["anterior"], "LPS", pectinate.figure.Style())
+        lines = scene["parts"][0]["streamlines"]
+        assert lines["height"] == height
+        assert (lines["normals"] is None) == (height == 1)
+        # On a ball normals point away from its middle.
+        normals, points = part.streamlines.normals, part.streamlines.points  # type: ignore[union-attr]
+        cosines = (normals * points).sum(axis=1) / np.linalg.norm(points, axis=1)  # type: ignore[operator]
+        assert cosines.min() > 0.9
+
+
 def test_view_writes_a_page_of_several_surfaces(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     vertices, triangles = meshes.grid(12, 12)
     along = np.tile([1.0, 0, 0], (len(triangles), 1))
@@ -277,7 +327,8 @@ def test_view_writes_a_page_of_several_surfaces(tmp_path: Path, capsys: pytest.C
     page = tmp_path / "page.html"
     words = ["view", tmp_path / "fibres.pts", tmp_path / "bare.ply", "--out", page, "--units", "mm", "--json"]
     pectinate.save_surface(pectinate.load((vertices, triangles, along)), tmp_path / "fibres.pts", units="mm")
-    assert main([*map(str, words), "--separation", "2", "--tube-radius", "0.3"]) == ExitCode.DONE
+    words += ["--separation", "2", "--tube-radius", "0.3", "--tube-height", "0.6"]
+    assert main([str(word) for word in words]) == ExitCode.DONE
     report = json.loads(capsys.readouterr().out)
     assert report["files"] == [str(page)]
     assert [surface["name"] for surface in report["surfaces"]] == ["fibres", "bare"]
@@ -286,6 +337,7 @@ def test_view_writes_a_page_of_several_surfaces(tmp_path: Path, capsys: pytest.C
     html = page.read_text(encoding="utf-8")
     assert len(html.encode()) == report["bytes"]
     assert '"radius":0.3' in html
+    assert '"height":0.6' in html
 
 
 def test_view_shows_values_and_tracts(tmp_path: Path) -> None:
@@ -304,6 +356,21 @@ def test_view_shows_values_and_tracts(tmp_path: Path) -> None:
     assert '"contours":{' in html
 
 
+def test_view_shows_values_on_tubes(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    vertices, triangles = meshes.grid(6, 6)
+    model = pectinate.load((vertices, triangles, np.tile([1.0, 0, 0], (len(triangles), 1))))
+    surface, values, page = tmp_path / "a.pts", tmp_path / "row.npy", tmp_path / "page.html"
+    pectinate.save_surface(model, surface)
+    np.save(values, np.arange(len(triangles)))
+    assert main([str(word) for word in ("view", surface, "--tube-values", values, "--out", page, "--quiet")]) == 0
+    placement = pectinate.place_streamlines(pectinate.load(surface))
+    expected = placement.page(name="a", title="a", tube_values={"row": np.arange(len(triangles))}, notes=[])
+    scales = re.findall(r'"tube_scales":\[.*?\]', page.read_text(encoding="utf-8"))
+    assert scales == re.findall(r'"tube_scales":\[.*?\]', expected.html)
+    assert '"row"' in scales[0]
+
+
 def test_view_refuses_before_it_works(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     values = tmp_path / "v.npy"
     values.write_text("no array")
@@ -316,6 +383,8 @@ def test_view_refuses_before_it_works(tmp_path: Path, capsys: pytest.CaptureFixt
         (["a.ply", "--out", "page.png"], ExitCode.USAGE, "page.png"),
         (["a.ply", "b.ply", "--values", str(values)], ExitCode.USAGE, "one MESH"),
         (["a.ply", "--values", "v.txt"], ExitCode.USAGE, "v.txt"),
+        (["a.ply", "--tube-values", "v.txt"], ExitCode.USAGE, "v.txt"),
+        ([str(tmp_path / "a.ply"), "--tube-values", str(heights)], ExitCode.USAGE, "has no fibres"),
         (["a.ply", "--contours", "1"], ExitCode.USAGE, "--contours serves --values alone"),
         ([str(tmp_path / "a.ply"), "--values", str(tags), "--contours", "1"], ExitCode.USAGE, "one value per vertex"),
         ([str(tmp_path / "a.ply"), "--values", str(heights), "--contours", "-1"], ExitCode.USAGE, "-1"),

@@ -16,8 +16,9 @@ import pectinate
 from browser import Browser, start_browser
 from pectinate import datasets, place_streamlines
 from pectinate._core import StopReason
-from pectinate.figure import Layer, SurfaceValues, render_view, standard_view
+from pectinate.figure import Layer, SurfaceValues, View, render_view, standard_view
 from pectinate.figure.polylines import Lines, values_at
+from pectinate.placement import DRAWN_TUBE_HEIGHT
 from pectinate.viewer import Marker, Page, Part
 
 SIZE = (360, 300)
@@ -52,8 +53,10 @@ def page(placement: pectinate.Placement, tmp_path_factory: pytest.TempPathFactor
     return path
 
 
-def figure(placement: pectinate.Placement, **options: Any) -> Picture:
-    tubes, mesh = placement.tubes(), placement.mesh
+def figure(
+    placement: pectinate.Placement, *, height: float = DRAWN_TUBE_HEIGHT, radius: float | None = None, **options: Any
+) -> Picture:
+    tubes, mesh = placement.tubes(height=height, radius=radius), placement.mesh
     surface = (mesh.vertices, mesh.triangles)
     return render_view(surface, (tubes.vertices, tubes.triangles), size=SIZE, **options).astype(np.float64)
 
@@ -170,7 +173,7 @@ def test_values_on_tubes_and_contours_are_those_of_the_picture(
     placement.save(tmp_path / "page.html", **look)
     open_folded(browser, tmp_path / "page.html")
     shown, mesh = browser.picture(ratio=2), placement.mesh
-    tubes = placement.tubes(taper_length=taper)
+    tubes = placement.tubes(taper_length=taper, height=DRAWN_TUBE_HEIGHT)
     at_points = (placement.barycentric * np.nan_to_num(values)[mesh.triangles[placement.point_triangles]]).sum(axis=1)
     missing = (np.isnan(values)[mesh.triangles[placement.point_triangles]] & (placement.barycentric > 0)).any(axis=1)
     numbers = values_at(SurfaceValues(np.where(missing, np.nan, at_points)), tubes.vertex_points)
@@ -256,6 +259,26 @@ def test_tubes_of_closed_lines_are_rings(browser: Browser, tmp_path: Path, name:
     # From ring to ring neighbours are close, at the joint as well: nothing is twisted.
     assert np.linalg.norm(centres[starts] - centres[ends], axis=1).max() < 1
     assert np.linalg.norm(offsets[starts] - offsets[ends], axis=1).max() < 1.1
+
+
+@pytest.mark.usefixtures("opengl")
+@pytest.mark.parametrize("height", [0.3, 1.0])
+def test_tubes_have_the_height_of_the_picture(
+    browser: Browser, placement: pectinate.Placement, tmp_path: Path, height: float
+) -> None:
+    # Thick ones, on a part that is turned.
+    turn = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+    part = placement.part(tube_radius=1.2, tube_height=height, rotation=turn)
+    Page(part, views=["anterior"]).save(tmp_path / "page.html")
+    open_folded(browser, tmp_path / "page.html")
+    shown, seen = browser.picture(ratio=2), standard_view("anterior")
+    unturned = View("turned", tuple(seen.direction @ turn), tuple(seen.up @ turn))
+    same, other = (
+        np.corrcoef(shown.ravel(), figure(placement, radius=1.2, height=h, view=unturned).ravel())[0, 1]
+        for h in (height, 1.3 - height)
+    )
+    assert same > 0.98
+    assert 1 - same < 0.5 * (1 - other)
 
 
 def test_a_drag_turns_the_scene_like_a_ball(browser: Browser, page: Path) -> None:

@@ -15,6 +15,7 @@ struct TubeOptions {
   double radius = 0.18;       ///< rho_0, unit of the mesh, > 0
   double taper_length = 2.0;  ///< lambda, unit of the mesh, >= 0; 0 gives blunt ends
   int side_count = 8;         ///< in [3, 12]
+  double height = 1.0;        ///< of the tubes over their width, in (0, 1]; below 1 they lie flat on the surface
 };
 
 /// Closed triangle meshes, one per streamline, one after the other; counter-clockwise seen from outside.

@@ -23,7 +23,8 @@ from pectinate.cli.shared_arguments import (
     seed,
     whole,
 )
-from pectinate.placement import DEFAULTS
+from pectinate.cli.value_arguments import add_values
+from pectinate.placement import DEFAULTS, DRAWN_TUBE_HEIGHT
 
 
 def make_parser() -> argparse.ArgumentParser:
@@ -77,16 +78,7 @@ def _add_view(subparsers: argparse._SubParsersAction[Parser]) -> None:
     group = parser.add_argument_group("page")
     group.add_argument("--out", type=Path, metavar="FILE", help=".html; by default the page opens in the browser")
     group.add_argument("--title", metavar="TEXT", help="above the controls")
-    group.add_argument(
-        "--values",
-        type=Path,
-        action="append",
-        default=[],
-        metavar="FILE",
-        help=".npy or .dat: a number per triangle or vertex, shown in colours; may be repeated",
-    )
-    words = "lines every so many units of values per vertex, such as isochrones"
-    group.add_argument("--contours", type=float, metavar="STEP", help=words)
+    add_values(group, "")
     group.add_argument("--tracts", type=Path, metavar="FILE", help="file of tracts, drawn as black lines")
     add_views(group)
     _add_tubes(group)
@@ -170,6 +162,7 @@ def _add_outputs(parser: argparse.ArgumentParser) -> None:
         "--tubes", type=Path, action="append", default=[], metavar="FILE", help=".ply, .obj or .glb; may be repeated"
     )
     group.add_argument("--figure", type=Path, metavar="FILE", help="picture of surface and tubes, such as f.png")
+    add_values(group, ", for pages")
     add_views(group)
     _add_tubes(group)
     group.add_argument("--tube-sides", dest="side_count", type=whole, metavar="N", help="3 to 12")
@@ -178,3 +171,5 @@ def _add_outputs(parser: argparse.ArgumentParser) -> None:
 def _add_tubes(group: argparse._ActionsContainer) -> None:
     group.add_argument("--tube-radius", type=float, metavar="MM", help="by default in proportion to the separation")
     group.add_argument("--taper-length", type=float, metavar="MM", help="over which tubes grow thin at their ends")
+    words = f"over their width, at most 1: by default {DRAWN_TUBE_HEIGHT:g} in pictures and pages, 1 (round) in files"
+    group.add_argument("--tube-height", type=float, metavar="SHARE", help=words)

@@ -4,26 +4,18 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 import pectinate
 from pectinate.cli import report
 from pectinate.cli.files import check_folders, check_suffixes, check_views, given, load_surface, writing
 from pectinate.cli.progress import ProgressBar
-from pectinate.cli.shared_arguments import UsageError
-from pectinate.errors import InvalidFile, InvalidOption
-from pectinate.figure import SurfaceValues
-from pectinate.io import opencarp
-from pectinate.model import Model
+from pectinate.cli.value_arguments import check_values, given_flags, read_values
+from pectinate.errors import InvalidOption
 from pectinate.placement import DEFAULTS
 from pectinate.viewer import Page, Part
 from pectinate.viewer.page import SUFFIXES
 
-_VALUE_SUFFIXES = frozenset({".npy", ".dat"})
-_TUBES = {name: name for name in ("tube_radius", "taper_length")}
+_TUBES = {name: name for name in ("tube_radius", "taper_length", "tube_height")}
 
 
 def view(arguments: argparse.Namespace) -> None:
@@ -52,34 +44,28 @@ def _check(arguments: argparse.Namespace) -> None:
     if arguments.out is not None:
         check_suffixes("--out", [arguments.out], frozenset(SUFFIXES))
         check_folders([arguments.out])
-    check_suffixes("--values", arguments.values, _VALUE_SUFFIXES)
-    if arguments.contours is not None and not arguments.values:
-        raise UsageError("--contours serves --values alone, which is not given; add it or leave --contours out")
-    if len(arguments.meshes) > 1 and (arguments.values or arguments.tracts is not None):
-        raise InvalidOption("--values and --tracts belong to one surface: give one MESH")
+    check_values(arguments)
+    if len(arguments.meshes) > 1 and (given_flags(arguments) or arguments.tracts is not None):
+        raise InvalidOption("--values, --tube-values and --tracts belong to one surface: give one MESH")
     check_views(arguments)
 
 
 def _part(path: Path, arguments: argparse.Namespace) -> Part:
     model = load_surface(arguments, path)
-    values = {file.stem: SurfaceValues(_values(model, file), contours=arguments.contours) for file in arguments.values}
+    values = read_values(model, arguments)
     tracts = [] if arguments.tracts is None else pectinate.read_tracts(arguments.tracts).curves_on(model)
-    options: dict[str, Any] = {"surface_values": values, "tracts": tracts}
     if model.field is None:
-        return model.part(path.stem, **options)
+        if arguments.tube_values:
+            raise InvalidOption(f"--tube-values colour tubes, but {path} has no fibres: name them with --field")
+        return model.part(path.stem, surface_values=values.surface, tracts=tracts)
     with ProgressBar("placing", enabled=not arguments.quiet) as bar:
         placement = pectinate.place_streamlines(
             model, progress=bar, **given(arguments, {name: name for name in DEFAULTS})
         )
-    return placement.part(path.stem, **options, **given(arguments, _TUBES))
-
-
-def _values(model: Model, path: Path) -> NDArray[np.float64]:
-    """Numbers of a file per triangle or vertex of the source, taken to the mesh."""
-    try:
-        array = np.load(path, allow_pickle=False) if path.suffix.lower() == ".npy" else opencarp.read_dat(path)
-        return model.to_mesh(array)
-    except (OSError, ValueError, EOFError) as error:
-        if isinstance(error, pectinate.errors.Error):
-            raise
-        raise InvalidFile.at(path, f"is no array ({error})", "write it with numpy.save") from error
+    return placement.part(
+        path.stem,
+        surface_values=values.surface,
+        tube_values=values.tubes,
+        tracts=tracts,
+        **given(arguments, _TUBES),
+    )

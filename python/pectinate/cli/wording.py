@@ -11,6 +11,7 @@ _OTHER_NAMES = {
     "thread_count": "--threads",
     "side_count": "--tube-sides",
     "tube radius": "--tube-radius",
+    "tube height": "--tube-height",
     "outer_loop": "--outer",
     "inner_loop": "--inner",
     "outer_loops": "--outer-first or --outer-second",

@@ -14,7 +14,7 @@ from PIL import Image
 from pectinate.errors import InvalidOption
 from pectinate.figure.color_bar import beside_color_bars
 from pectinate.figure.files import check_picture_path, save_picture
-from pectinate.figure.frame import Frame, fitting_scale, middle
+from pectinate.figure.frame import Frame, fitting_scale, middle, rotated
 from pectinate.figure.layout import Layout
 from pectinate.figure.markers import RADIUS, draw_markers
 from pectinate.figure.offscreen import open_canvas
@@ -206,7 +206,7 @@ class _Picture:
 
     def extent(self) -> NDArray[np.float64]:
         """Least width and height in mm of a picture, with this centre, that shows everything."""
-        seen = (self.drawing.points - self.centre) @ self.view.rotation().T
+        seen = rotated(self.drawing.points - self.centre, self.view.rotation())
         return np.asarray(2 * np.abs(seen[:, :2]).max(axis=0))
 
 

@@ -12,6 +12,9 @@ from pectinate.figure.frame import Frame
 from pectinate.figure.offscreen import Canvas, Stage
 from pectinate.figure.shading import blurred_depth
 
+Window = tuple[NDArray[np.int64], NDArray[np.int64]]
+"""First column and row, (2,), of the pixels where there may be something, and those behind the last."""
+
 # Cells of a map at most, in all and along a side: they take some 200 MB to draw.
 _MOST_CELLS, _LONGEST_SIDE = 4_000_000, 4096
 # Cells across the radius of a fold, where folds are so large in pixels.
@@ -20,12 +23,12 @@ _FOLD_CELLS = 8
 
 @dataclass(frozen=True)
 class DepthMap:
-    """Depths of a frame; made by `draw_depth_map`.
+    """Depths of a frame; made by `pick_depth_map` or `draw_depth_map`.
 
     Attributes
     ----------
     samples
-        (h, w) float32, mm behind the nearest vertex, in the middle of each cell; infinite where nothing is drawn.
+        (h, w) float32, mm behind the nearest vertex, near the middle of each cell; infinite where nothing is drawn.
     surroundings
         (h, w) float32, mm: mean depth around each cell.
     cell
@@ -65,34 +68,65 @@ class DepthMap:
         return depth
 
 
-def draw_depth_map(
-    canvas: Canvas, stage: Stage, frame: Frame, window: tuple[NDArray[np.int64], NDArray[np.int64]], fold_size: float
-) -> DepthMap:
-    """Draw the depth of a frame where there is something to see.
+@dataclass(frozen=True)
+class Grid:
+    """The cells of a map.
 
-    It does not depend on the tiles that the picture is drawn in.
-
-    Parameters
+    Attributes
     ----------
-    canvas, stage, frame
-        What to draw on, what, and what of it is seen.
-    window : two (2,) int64
-        The pixels where there may be something, of `Frame.window`.
-    fold_size : float
+    frame, window
+        The picture, and which of its pixels the cells cover.
+    fold_size
         Width in mm of the folds that shall be darkened: the size of the surroundings.
+    supersampling
+        Samples of the picture across a pixel. The depth of a cell is that of the sample next to its middle.
     """
-    first, last = window
-    radius = 0.5 * fold_size / frame.mm_per_pixel
-    extent = last - first
-    cell = max(
-        1,
-        int(radius // _FOLD_CELLS),
-        math.ceil(math.sqrt(float(extent[0]) * float(extent[1]) / _MOST_CELLS)),
-        math.ceil(extent.max() / _LONGEST_SIDE),
-    )
-    cells = -(-extent // cell)
-    middle = (first + 0.5 * cell * cells - 0.5 * np.array(frame.size)) * (1, -1) * frame.mm_per_pixel
+
+    frame: Frame
+    window: Window
+    fold_size: float
+    supersampling: int
+
+    @property
+    def cell(self) -> int:
+        """Pixels across a cell: as many as folds allow and as the most cells ask for."""
+        extent = self.window[1] - self.window[0]
+        return max(
+            1,
+            int(self.radius // _FOLD_CELLS),
+            math.ceil(math.sqrt(float(extent[0]) * float(extent[1]) / _MOST_CELLS)),
+            math.ceil(int(extent.max()) / _LONGEST_SIDE),
+        )
+
+    @property
+    def radius(self) -> float:
+        """Pixels from the middle of the surroundings to their border."""
+        return 0.5 * self.fold_size / self.frame.mm_per_pixel
+
+    def complete(self, samples: NDArray[np.float32]) -> DepthMap:
+        """The map with these depths (h, w) of cells."""
+        cell, (left, top) = self.cell, self.window[0].tolist()
+        blur = min(max(1, round(self.radius / cell)), max(samples.shape))
+        return DepthMap(samples, blurred_depth(samples, blur), cell, (left, top))
+
+
+def pick_depth_map(grid: Grid, depth: NDArray[np.float32]) -> DepthMap:
+    """Pick the map out of the depths (supersampling * h, supersampling * w), of `Canvas.draw`, of all of the window."""
+    step = grid.cell * grid.supersampling
+    # Cells whose middle is beyond the window take what is nearest.
+    rows, columns = (np.minimum(np.arange(0, length, step) + step // 2, length - 1) for length in depth.shape)
+    return grid.complete(depth[np.ix_(rows, columns)])
+
+
+def draw_depth_map(grid: Grid, canvas: Canvas, stage: Stage) -> DepthMap:
+    """Draw the map of a picture that is not drawn at once: the same but for rounding, whatever its tiles are."""
+    cell, frame = grid.cell, grid.frame
+    first, last = grid.window
+    cells = -(-(last - first) // cell)
+    # In pixels, from where canvases take depths to where `pick_depth_map` does.
+    place = canvas.depth_place()
+    shift = (cell * grid.supersampling // 2 + place) / grid.supersampling - cell * place
+    middle = (first + 0.5 * cell * cells - 0.5 * np.array(frame.size) + shift) * (1, -1) * frame.mm_per_pixel
     size = (int(cells[0]), int(cells[1]))
     _, samples = canvas.draw(stage, size, frame.mm_per_pixel * cell, (float(middle[0]), float(middle[1])))
-    blur = min(max(1, round(radius / cell)), int(cells.max()))
-    return DepthMap(samples, blurred_depth(samples, blur), cell, (int(first[0]), int(first[1])))
+    return grid.complete(samples)

@@ -84,7 +84,7 @@ class Canvas:
         color : (height, width, 4) uint8
             RGB premultiplied by A, the share of the pixel that is covered.
         depth : (height, width) float32
-            Distance in mm behind the nearest vertex; infinite where nothing is drawn.
+            Distance in mm behind the nearest vertex, in `depth_place` of each pixel; infinite where nothing is drawn.
         """
         near = stage.near_plane
         camera = self._pyrender.OrthographicCamera(1.0, 0.5 * size[1] * mm_per_pixel, znear=near, zfar=2 * near)
@@ -101,6 +101,19 @@ class Canvas:
         depth -= np.float32(stage.slack)
         depth[background] = np.inf
         return color, depth
+
+    def depth_place(self) -> NDArray[np.float64]:
+        """Where in each pixel depths are taken: right and down from its upper left corner, (2,) from 0 to 1.
+
+        That is one of the pixel's samples, the first.
+        """
+        from OpenGL import GL  # noqa: PLC0415  (bound to the platform of the context)
+
+        self._renderer._configure_main_framebuffer()
+        place = np.zeros(2, dtype=np.float32)
+        GL.glBindFramebuffer(GL.GL_DRAW_FRAMEBUFFER, self._renderer._main_fb_ms)
+        GL.glGetMultisamplefv(GL.GL_SAMPLE_POSITION, 0, place)
+        return np.array([place[0], 1 - place[1]], dtype=np.float64)
 
     def _read(self, _scene: Any, _flags: Any) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
         """RGBA and the depth buffer, 0 to 1, of what the renderer has drawn.

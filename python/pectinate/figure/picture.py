@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pectinate.errors import InvalidOption
-from pectinate.figure.depth_map import DepthMap, draw_depth_map
+from pectinate.figure.depth_map import DepthMap, Grid, Window, draw_depth_map, pick_depth_map
 from pectinate.figure.frame import Frame, extent, fitting_scale, middle
 from pectinate.figure.offscreen import Canvas, Stage, open_canvas
 from pectinate.figure.patient_axes import PatientAxes
-from pectinate.figure.shading import VALUE_SHADE, Style, box_downsample, fold_shadow
+from pectinate.figure.shading import Style, box_downsample, fold_losses, fold_shadow
 from pectinate.figure.shape import Drawing, Layer, check_drawing, patches
 from pectinate.figure.triangles import Triangles
 from pectinate.figure.values import SurfaceValues
@@ -30,6 +32,8 @@ _STRIP = 64
 """Rows of a tile that are finished together: what is made of them on the way stays small."""
 
 _LARGEST_SUPERSAMPLING = 8
+
+_Tile: TypeAlias = tuple[NDArray[np.int64], NDArray[np.int64]]
 
 
 def render_view(  # noqa: PLR0913
@@ -136,36 +140,46 @@ def draw_frame(  # noqa: PLR0913
     stage = canvas.load(patches(drawing, frame.view, frame.centre, style))
     fold_size = FOLD_SIZE * drawing.diagonal
     window = frame.window(drawing.points)
-    depth_map = draw_depth_map(canvas, stage, frame, window, fold_size)
-    darkness = style.fold_darkness * (VALUE_SHADE if drawing.shows_values else 1.0)
-
-    def finish(premultiplied: NDArray[np.float32]) -> NDArray[np.uint8]:
-        return straight_alpha(premultiplied) if transparent else on_background(premultiplied, style)
-
+    tiles = _tiles(window, max(1, min(tile, canvas.largest_size) // supersampling))
+    grid = Grid(frame, window, fold_size, supersampling)
+    drawn: Iterable[tuple[NDArray[np.uint8], NDArray[np.float32]]]
+    drawn = (_draw_tile(canvas, stage, frame, pixels, supersampling) for pixels in tiles)
+    if len(tiles) == 1:
+        ((_, depth),) = drawn = list(drawn)
+        depth_map = pick_depth_map(grid, depth)
+    else:
+        depth_map = draw_depth_map(grid, canvas, stage)
+    losses = fold_losses(style, shows_values=drawing.shows_values)
+    finish = straight_alpha if transparent else partial(on_background, style=style)
     picture = np.empty((*frame.size[::-1], 4 if transparent else 3), dtype=np.uint8)
     picture[:] = finish(np.zeros((1, 1, 4), dtype=np.float32))
-    side = max(1, min(tile, canvas.largest_size) // supersampling)
-    (left, top), (right, bottom) = window
-    for row, column in itertools.product(range(top, bottom, side), range(left, right, side)):
-        columns, rows = np.arange(column, min(column + side, right)), np.arange(row, min(row + side, bottom))
-        color, depth = _draw_tile(canvas, stage, frame, (columns, rows), supersampling)
+    for (columns, rows), (color, depth) in zip(tiles, drawn, strict=True):
         for start in range(0, len(rows), _STRIP):
             strip = rows[start : start + _STRIP]
             samples = slice(start * supersampling, (start + len(strip)) * supersampling)
-            lit = color[samples].astype(np.float32)
-            if darkness > 0 and fold_size > 0:
-                shadow = fold_shadow(depth[samples], depth_map.surroundings_at(columns, strip), 0.5 * fold_size)
-                lit[:, :, :3] *= (1 - np.float32(darkness) * shadow)[:, :, None]
-            finished = finish(box_downsample(lit, supersampling) / np.float32(255))
-            picture[strip[0] : strip[-1] + 1, column : column + len(columns)] = finished
+            shadow = None
+            if style.fold_darkness > 0 and fold_size > 0:
+                surroundings = depth_map.surroundings_at(columns, strip)
+                shadow = fold_shadow(depth[samples], surroundings, 0.5 * fold_size)
+            finished = finish(box_downsample(color[samples], supersampling, shadow, losses))
+            picture[strip[0] : strip[-1] + 1, columns[0] : columns[-1] + 1] = finished
     return Drawn(picture, frame, stage.nearest, depth_map)
+
+
+def _tiles(window: Window, side: int) -> list[_Tile]:
+    """Columns and rows of each tile."""
+    (left, top), (right, bottom) = window
+    return [
+        (np.arange(column, min(column + side, right)), np.arange(row, min(row + side, bottom)))
+        for row, column in itertools.product(range(top, bottom, side), range(left, right, side))
+    ]
 
 
 def _draw_tile(
     canvas: Canvas,
     stage: Stage,
     frame: Frame,
-    pixels: tuple[NDArray[np.int64], NDArray[np.int64]],
+    pixels: _Tile,
     supersampling: int,
 ) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
     """Draw some columns and rows of a frame: premultiplied RGBA and depth, with supersampling."""

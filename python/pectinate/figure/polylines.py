@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pectinate.errors import InvalidOption
 from pectinate.figure.lines import located_tubes
+from pectinate.figure.shading import unit
 from pectinate.figure.values import NamedValues, SurfaceValues
 
 _FEWEST_POINTS = 2
@@ -56,6 +57,10 @@ class Lines:
         Makes the tubes for pictures, when they are needed; by default tubes with round ends.
     values : mapping from str to SurfaceValues or (N,) float
         Numbers per point that can colour the tubes, by name.
+    height : float
+        Of the tubes over their width on a page, above 0 and at most 1; below 1 they lie flat on the surface.
+    normals : (N, 3) float, optional
+        Outward normals of the surface at the points, of any length; needed for tubes that are not round.
 
     Raises
     ------
@@ -70,12 +75,22 @@ class Lines:
     taper_length: float = 0.0
     make_tubes: Callable[[], TubeMesh] | None = None
     values: NamedValues = field(default_factory=dict)
+    height: float = 1.0
+    normals: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.radius) and self.radius > 0):
             raise InvalidOption(f"tube radius is {self.radius}, but must be positive and finite")
         if not (np.isfinite(self.taper_length) and self.taper_length >= 0):
             raise InvalidOption(f"taper_length is {self.taper_length}, but must be finite and not negative")
+        if not 0 < self.height <= 1:
+            raise InvalidOption(f"tube height is {self.height} of the width, but must be above 0 and at most 1")
+        if self.height < 1 and self.normals is None:
+            raise InvalidOption("lines: flat tubes need normals of the surface, (N, 3)")
+        if self.normals is not None and not (
+            self.normals.shape == self.points.shape and np.isfinite(self.normals).all()
+        ):
+            raise InvalidOption(f"lines: normals of shape {self.normals.shape}; give finite numbers, one row per point")
         if self.points.ndim != 2 or self.points.shape[1] != 3 or not np.isfinite(self.points).all():  # noqa: PLR2004
             raise InvalidOption(f"lines: points of shape {self.points.shape}; give finite numbers, (N, 3)")
         ends = (0, len(self.points))
@@ -151,6 +166,13 @@ def resampled(lines: Lines) -> tuple[NDArray[np.float64], NDArray[np.float64], N
     samples = np.repeat(arc[first], counts) * (1 - share) + np.repeat(arc[last], counts) * share
     places = np.interp(samples, arc, np.arange(len(arc)))
     return _between(lines.points, places), places, counts
+
+
+def normals_at(lines: Lines, places: NDArray[np.float64]) -> NDArray[np.float64] | None:
+    """Unit normals (n, 3) of the surface at places on lines, as of `resampled`; None where tubes are round."""
+    if lines.normals is None or lines.height == 1:
+        return None
+    return unit(_between(lines.normals, places))
 
 
 def _check_point_values(name: str, given: SurfaceValues, point_count: int) -> None:

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pectinate.errors import InvalidMesh
 from pectinate.figure.contours import contour_tubes
+from pectinate.figure.frame import rotated
 from pectinate.figure.offscreen import Patch
 from pectinate.figure.shading import (
     Color,
@@ -167,30 +168,37 @@ def patches(drawing: Drawing, view: View, centre: NDArray[np.float64], style: St
 
 def _surface_patches(surface: Surface, view: View, centre: NDArray[np.float64], style: Style) -> list[Patch]:
     """A surface: outside and inside as patches of their own colours."""
-    shape, rotation = surface.shape, view.rotation()
-    vertices, normals = (shape.vertices - centre) @ rotation.T, shape.normals @ rotation.T
-    faces_viewer = turned_to_viewer(vertices, shape.triangles) >= 0
-    facing = shape.triangles[faces_viewer]
+    triangles, (vertices, normals) = surface.shape.triangles, _seen(surface.shape, view, centre)
+    faces_viewer = turned_to_viewer(vertices, triangles) >= 0
+    facing = triangles[faces_viewer]
     if surface.colors is None:
-        outside = Patch(vertices, facing, shaded(surface.color, light(normals, style.edge_darkness)))
+        brightness = light(normals, style.edge_darkness)
+        outside = Patch(vertices, facing, shaded(surface.color, brightness, style.shadow_color))
     else:
         corners, colors = facing.ravel(), surface.colors.colors[faces_viewer].reshape(-1, 3)
         lit = shaded(colors, value_light(normals[corners], style.edge_darkness))
         # Each triangle has corners of its own, whose colours it does not share with its neighbours.
         outside = Patch(vertices[corners], np.arange(len(corners)).reshape(-1, 3), lit)
-    inside = shaded(style.inside_color, light(-normals, style.edge_darkness))
-    sides = (outside, Patch(vertices, shape.triangles[~faces_viewer], inside))
+    inside = shaded(style.inside_color, light(-normals, style.edge_darkness), style.shadow_color)
+    sides = (outside, Patch(vertices, triangles[~faces_viewer], inside))
     return [patch for patch in sides if len(patch.triangles)]
 
 
 def _tube_patches(tubes: Tubes, view: View, centre: NDArray[np.float64], style: Style) -> list[Patch]:
     """The halves of the tubes that face the viewer; the others are hidden, because tubes are closed."""
-    shape, rotation = tubes.shape, view.rotation()
-    vertices, normals = (shape.vertices - centre) @ rotation.T, shape.normals @ rotation.T
-    facing = shape.triangles[turned_to_viewer(vertices, shape.triangles) > 0]
+    vertices, normals = _seen(tubes.shape, view, centre)
+    facing = tubes.shape.triangles[turned_to_viewer(vertices, tubes.shape.triangles) > 0]
     if tubes.colors is not None or tubes.calm:
         # No gloss, which would be another colour.
         colors = shaded(tubes.color if tubes.colors is None else tubes.colors.colors, value_light(normals, 0.0))
     else:
-        colors = shaded(tubes.color, light(normals, 0.0), style.tube_gloss * gloss(normals))
+        highlight = style.tube_gloss * gloss(normals)
+        colors = np.minimum(shaded(tubes.color, light(normals, 0.0)) + highlight[:, None], 1.0)
     return [Patch(vertices, facing, colors)] if len(facing) else []
+
+
+def _seen(shape: Shape, view: View, centre: NDArray[np.float64]) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Vertices and normals in picture coordinates, in the single precision in which they are drawn."""
+    rotation = view.rotation()
+    vertices = rotated((shape.vertices - centre).astype(np.float32), rotation)
+    return vertices, rotated(shape.normals, rotation)

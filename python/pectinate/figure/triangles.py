@@ -23,7 +23,7 @@ class Shape:
 
     vertices: NDArray[np.float64]
     triangles: NDArray[np.int64]
-    normals: NDArray[np.float64]
+    normals: NDArray[np.float32]
     rows: NDArray[np.int64]
 
 
@@ -53,4 +53,4 @@ def check_shape(name: str, arrays: Triangles) -> Shape | None:
     finite = np.isfinite(vertices).all(axis=1)
     if not finite.all():
         raise InvalidMesh(f"{name}: {np.count_nonzero(~finite)} vertices in use are not finite; remove their triangles")
-    return Shape(vertices, triangles, vertex_normals(vertices, triangles), rows)
+    return Shape(vertices, triangles, vertex_normals(vertices, triangles).astype(np.float32), rows)

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 _STEPS = 65535
+_DIRECTION_STEPS = 127
 NO_VALUE = 65535
 """What stands for a number that is not finite among quantized values."""
 
@@ -83,6 +84,11 @@ def quantized_values(values: NDArray[np.float64], low: float, high: float) -> ND
     share = (0.5 * np.where(finite, values, low) - 0.5 * low) / (0.5 * high - 0.5 * low)
     steps = np.rint(np.clip(share, 0.0, 1.0) * (NO_VALUE - 1)).astype(np.uint16)
     return np.where(finite, steps, np.uint16(NO_VALUE))
+
+
+def quantized_directions(vectors: NDArray[np.float64]) -> NDArray[np.uint16]:
+    """Unit vectors (n, 3) in 127ths; numbers below 0 wrap around."""
+    return np.rint(_DIRECTION_STEPS * vectors).astype(np.int16).view(np.uint16)
 
 
 def coherent_order(

@@ -15,8 +15,8 @@ from pectinate.figure.frame import MARGIN
 from pectinate.figure.parts import Marker, Part, nearest_parts, normal_at, used_vertices
 from pectinate.figure.patient_axes import PatientAxes
 from pectinate.figure.picture import FOLD_SIZE
-from pectinate.figure.polylines import Lines, resampled, values_at
-from pectinate.figure.shading import Style, light_settings
+from pectinate.figure.polylines import Lines, normals_at, resampled, values_at
+from pectinate.figure.shading import Style, fold_losses, light_settings
 from pectinate.figure.triangles import Triangles
 from pectinate.figure.values import (
     CategoryScale,
@@ -33,6 +33,7 @@ from pectinate.viewer.encoding import (
     ArrayPack,
     coherent_order,
     first_use_codes,
+    quantized_directions,
     quantized_points,
     quantized_values,
 )
@@ -124,6 +125,7 @@ def _lines(lines: Lines | None, part: Part, scales: _Scales, pack: ArrayPack) ->
         return None
     points, places, counts = resampled(lines)
     positions, place = quantized_points(part.placed(points))
+    normals = normals_at(lines, places)
     values = []
     for name, (scale, _) in scales.items():
         if name in lines.values:
@@ -136,6 +138,10 @@ def _lines(lines: Lines | None, part: Part, scales: _Scales, pack: ArrayPack) ->
         "closed": np.flatnonzero(lines.closed()).tolist(),
         "radius": lines.radius,
         "taper_length": lines.taper_length,
+        "height": lines.height,
+        "normals": None
+        if normals is None
+        else pack.add(quantized_directions(normals @ np.asarray(part.rotation).T), 1),
         "values": values,
     }
 
@@ -213,6 +219,8 @@ def _style(style: Style) -> dict[str, Any]:
         "background_color": style.background_color,
         "ink_color": [channel / 255 for channel in ink_color(style)],
         "tube_gloss": style.tube_gloss,
-        "fold_darkness": style.fold_darkness,
+        "shadow_color": style.shadow_color,
+        "fold_losses": fold_losses(style, shows_values=False),
+        "value_fold_losses": fold_losses(style, shows_values=True),
         "edge_darkness": style.edge_darkness,
     }

@@ -32,6 +32,11 @@ function unpackPoints(bytes, lines) {
   return Float32Array.from(steps, (step, index) => lines.origin[index % 3] + lines.step * step);
 }
 
+// Unit vectors in 127ths.
+function unpackDirections(bytes, place) {
+  return Float32Array.from(new Int16Array(unpack(bytes, place).buffer), (step) => step / 127);
+}
+
 // Corners of triangles: 0 stands for a vertex that no triangle before has used.
 function unpackTriangles(bytes, place) {
   const corners = unpack(bytes, place);

@@ -26,12 +26,11 @@ class Viewer {
   buildPart(part, bytes) {
     const { style } = this.scene;
     const surface = buildSurface(bytes, part.surface);
-    const clouds = [{ points: surface.positions }];
+    const clouds = [surface.positions];
     const tubes = (lines, color) => {
       if (!lines) return null;
       const geometry = buildTubes(bytes, lines);
-      const { position, thickness } = geometry.attributes;
-      clouds.push({ points: position.array, radii: thickness.array.map((share) => share * lines.radius) });
+      clouds.push(tubeSurface(geometry, lines.radius));
       return this.picture.addTubes(geometry, color, style.tube_gloss, lines.radius);
     };
     const plain = plainGeometry(surface);

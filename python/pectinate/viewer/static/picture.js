@@ -39,6 +39,7 @@ class Picture {
   addTubes(geometry, color, gloss, radius, calm = false) {
     return this.add(geometry, material(TUBE_VERTEX, TUBE_FRAGMENT, {
       ...this.uniforms, tubeColor: { value: color }, tubeGloss: { value: gloss }, radius: { value: radius },
+      height: { value: geometry.userData.height },
       showsValues: { value: false }, calm: { value: calm },
     }, THREE.FrontSide, this.defines()), [0]);
   }
@@ -66,10 +67,10 @@ class Picture {
     const size = this.renderer.getDrawingBufferSize(new THREE.Vector2());
     const mmPerPixel = view.mmPerPixel / this.renderer.getPixelRatio();
     this.aim(view, reach, size, mmPerPixel);
-    const { light, style, fold_size: foldSize } = this.scene;
+    const { style, fold_size: foldSize } = this.scene;
     this.uniforms.pictureSize.value.copy(size);
     this.uniforms.depthRange.value = this.camera.far - this.camera.near;
-    this.uniforms.foldDarkness.value = style.fold_darkness * (showsValues ? light.value_shade : 1);
+    this.uniforms.foldLosses.value.set(...(showsValues ? style.value_fold_losses : style.fold_losses));
     this.drawSurroundings(size, 0.5 * foldSize / mmPerPixel, asksDepths);
     this.camera.layers.set(0);
     this.renderer.setRenderTarget(null);
@@ -147,6 +148,7 @@ function sharedUniforms({ light, style, fold_size: foldSize }) {
     sky: { value: light.sky },
     ground: { value: light.ground },
     edgeDarkness: { value: style.edge_darkness },
+    shadowColor: { value: new THREE.Vector3(...style.shadow_color) },
     glossDirection: { value: new THREE.Vector3(...light.gloss_direction) },
     glossExponent: { value: light.gloss_exponent },
     valueShade: { value: light.value_shade },
@@ -155,7 +157,7 @@ function sharedUniforms({ light, style, fold_size: foldSize }) {
     pictureSize: { value: new THREE.Vector2() },
     depthRange: { value: 1 },
     foldReach: { value: 0.5 * foldSize },
-    foldDarkness: { value: 0 },
+    foldLosses: { value: new THREE.Vector3() },
   };
 }
 

@@ -38,21 +38,22 @@ const PACKING = `
 const FOLD_FUNCTIONS = `${PACKING}
   uniform sampler2D surroundings;
   uniform vec2 surroundingsSize, pictureSize;
-  uniform float depthRange, foldReach, foldDarkness;
+  uniform float depthRange, foldReach;
+  uniform vec3 foldLosses;
 
   vec2 surroundingsAt(vec2 cell) {
     return unpack(texture2D(surroundings, (clamp(cell, vec2(0.0), surroundingsSize - 1.0) + 0.5) / surroundingsSize));
   }
 
-  float foldShadow() {
+  vec3 foldShadow() {
     vec2 place = gl_FragCoord.xy / pictureSize * surroundingsSize - 0.5;
     vec2 cell = floor(place), share = place - cell;
     vec2 below = mix(surroundingsAt(cell), surroundingsAt(cell + vec2(1.0, 0.0)), share.x);
     vec2 above = mix(surroundingsAt(cell + vec2(0.0, 1.0)), surroundingsAt(cell + vec2(1.0, 1.0)), share.x);
     vec2 sums = mix(below, above, share.y);
-    if (sums.y < 0.004) return 1.0;
+    if (sums.y < 0.004) return vec3(1.0);
     float depth = (gl_FragCoord.z - sums.x / sums.y) * depthRange;
-    return 1.0 - foldDarkness * clamp(depth / foldReach, 0.0, 1.0);
+    return 1.0 - foldLosses * clamp(depth / foldReach, 0.0, 1.0);
   }`;
 
 const SURFACE_VERTEX = `
@@ -65,33 +66,40 @@ const SURFACE_VERTEX = `
   }`;
 
 const SURFACE_FRAGMENT = `${LIGHT_FUNCTIONS}${FOLD_FUNCTIONS}
-  uniform vec3 surfaceColor, insideColor;
+  uniform vec3 surfaceColor, insideColor, shadowColor;
   uniform bool showsValues;
   varying vec3 vNormal, vColor;
+
+  vec3 shade(float brightness) {
+    return mix(shadowColor, vec3(1.0), brightness);
+  }
+
   void main() {
     vec3 n = normalize(vNormal);
     vec3 color;
-    if (!gl_FrontFacing) color = insideColor * light(-n, edgeDarkness);
+    if (!gl_FrontFacing) color = insideColor * shade(light(-n, edgeDarkness));
     else if (showsValues) color = vColor * valueLight(n, edgeDarkness);
-    else color = surfaceColor * light(n, edgeDarkness);
+    else color = surfaceColor * shade(light(n, edgeDarkness));
     gl_FragColor = vec4(clamp(color, 0.0, 1.0) * foldShadow(), 1.0);
   }`;
 
-// A tube's vertex is its centre and a unit vector away from it; the radius comes last. Its light is computed at the
+// A tube's vertex is its centre and a unit vector away from it, of which the part along `up` becomes shorter in flat
+// tubes, and that of the normal longer; the radius comes last. Its light is computed at the
 // vertices, as in the pictures: highlights on dark tubes become broad and calm.
 const TUBE_VERTEX = `${LIGHT_FUNCTIONS}
-  attribute vec3 offset, valueColor;
+  attribute vec3 offset, up, valueColor;
   attribute float thickness;
   uniform bool showsValues, calm;
-  uniform float radius;
+  uniform float radius, height;
   uniform vec3 tubeColor;
   uniform float tubeGloss;
   varying vec3 vColor;
   void main() {
-    vec3 n = normalize(normalMatrix * offset);
+    vec3 raised = dot(offset, up) * up;
+    vec3 n = normalize(normalMatrix * (offset + (1.0 / height - 1.0) * raised));
     if (showsValues || calm) vColor = (showsValues ? valueColor : tubeColor) * valueLight(n, 0.0);
     else vColor = clamp(tubeColor * light(n, 0.0) + tubeGloss * gloss(n), 0.0, 1.0);
-    gl_Position = projectionMatrix * modelViewMatrix * vec4(position + radius * thickness * offset, 1.0);
+    gl_Position = projectionMatrix * modelViewMatrix * vec4(position + radius * thickness * (offset - (1.0 - height) * raised), 1.0);
   }`;
 
 const TUBE_FRAGMENT = `${FOLD_FUNCTIONS}

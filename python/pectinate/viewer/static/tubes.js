@@ -1,5 +1,5 @@
-// Tubes around lines. A vertex is its centre, a unit vector away from it and a thickness; the shader multiplies by the
-// radius, so that a slider can change it.
+// Tubes around lines. A vertex is its centre, a unit vector away from it, a thickness and the direction in which flat
+// tubes are low; the shader multiplies by the radius, so that a slider can change it.
 
 const SIDE_COUNT = 8;
 // Where the rings of a round end lie, as shares of a quarter turn.
@@ -8,6 +8,7 @@ const END_RINGS = [1, 2 / 3, 1 / 3, 0];
 function buildTubes(bytes, description) {
   const points = unpackPoints(bytes, description);
   const counts = unpack(bytes, description.counts);
+  const normals = description.normals ? unpackDirections(bytes, description.normals) : new Float32Array(points.length);
   const round = description.taper_length === 0;
   const extraRings = round ? 2 * (END_RINGS.length - 1) : 0;
   const closed = new Set(description.closed);
@@ -16,10 +17,13 @@ function buildTubes(bytes, description) {
   let first = 0;
   counts.forEach((count, line) => {
     const add = closed.has(line) ? addClosedTube : addTube;
-    add(rings, points.subarray(3 * first, 3 * (first + count)), description.taper_length, first);
+    const here = [3 * first, 3 * (first + count)];
+    add(rings, points.subarray(...here), normals.subarray(...here), description.taper_length, first);
     first += count;
   });
-  return rings.geometry();
+  const geometry = rings.geometry();
+  geometry.userData.height = description.height;
+  return geometry;
 }
 
 // Rings of vertices, one after the other, each joined to the one before unless it begins a tube.
@@ -27,6 +31,7 @@ class Rings {
   constructor(count) {
     this.centres = new Float32Array(3 * count * SIDE_COUNT);
     this.offsets = new Int8Array(4 * count * SIDE_COUNT);
+    this.ups = new Int8Array(4 * count * SIDE_COUNT);
     this.thicknesses = new Float32Array(count * SIDE_COUNT);
     this.points = new Uint32Array(count);
     this.corners = new Uint32Array(6 * count * SIDE_COUNT);
@@ -45,6 +50,7 @@ class Rings {
         const offset = c * frame.side[axis] + s * frame.other[axis] + along * frame.tangent[axis];
         this.centres[3 * this.vertexCount + axis] = centre[axis];
         this.offsets[4 * this.vertexCount + axis] = Math.round(127 * offset);
+        this.ups[4 * this.vertexCount + axis] = Math.round(127 * frame.up[axis]);
       }
       this.thicknesses[this.vertexCount++] = thickness;
     }
@@ -64,15 +70,33 @@ class Rings {
     geometry.setIndex(new THREE.BufferAttribute(this.corners.subarray(0, this.cornerCount), 1));
     geometry.setAttribute('position', new THREE.BufferAttribute(this.centres, 3));
     geometry.setAttribute('offset', new THREE.BufferAttribute(this.offsets, 4, true));
+    geometry.setAttribute('up', new THREE.BufferAttribute(this.ups, 4, true));
     geometry.setAttribute('thickness', new THREE.BufferAttribute(this.thicknesses, 1));
     geometry.userData.points = this.points;
     return geometry;
   }
 }
 
-function addTube(rings, points, taperLength, first) {
+// Where the vertices are with a radius, as the shader has them, in flat coordinates.
+function tubeSurface(geometry, radius) {
+  const [centres, offsets, ups, shares] = ['position', 'offset', 'up', 'thickness'].map((name) => geometry.attributes[name].array);
+  const result = new Float32Array(centres.length);
+  for (let i = 0; i < shares.length; i++) {
+    let raised = 0;
+    for (let axis = 0; axis < 3; axis++) raised += offsets[4 * i + axis] * ups[4 * i + axis];
+    const lowered = ((1 - geometry.userData.height) * raised) / 127 ** 2;
+    const scale = (radius * shares[i]) / 127;
+    for (let axis = 0; axis < 3; axis++) {
+      result[3 * i + axis] = centres[3 * i + axis] + scale * (offsets[4 * i + axis] - lowered * ups[4 * i + axis]);
+    }
+  }
+  return result;
+}
+
+function addTube(rings, points, normals, taperLength, first) {
   const count = points.length / 3;
   const point = (i) => [points[3 * i], points[3 * i + 1], points[3 * i + 2]];
+  const normal = (i) => [normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]];
   const arcs = [0];
   for (let i = 1; i < count; i++) arcs.push(arcs[i - 1] + length(minus(point(i), point(i - 1))));
   const total = arcs[count - 1];
@@ -81,7 +105,8 @@ function addTube(rings, points, taperLength, first) {
   for (let i = 0; i < count; i++) {
     const tangent = tangentAt(point, i, count);
     side = acrossTo(tangent, side);
-    const frame = { tangent, side, other: cross(tangent, side) };
+    const up = unit(withoutPart(normal(i), tangent));
+    const frame = { tangent, side, other: cross(tangent, side), up };
     if (taperLength > 0) {
       // Equation (3) of the paper.
       rings.add(point(i), frame, rise(arcs[i]) * rise(total - arcs[i]), 0, i === 0, first + i);
@@ -94,9 +119,10 @@ function addTube(rings, points, taperLength, first) {
 }
 
 // Of a line whose last point is its first: as thick everywhere, without ends.
-function addClosedTube(rings, points, taperLength, first) {
+function addClosedTube(rings, points, normals, taperLength, first) {
   const count = points.length / 3 - 1;
-  const point = (i) => [points[3 * (i % count)], points[3 * (i % count) + 1], points[3 * (i % count) + 2]];
+  const at = (all, i) => [all[3 * (i % count)], all[3 * (i % count) + 1], all[3 * (i % count) + 2]];
+  const point = (i) => at(points, i);
   const arcs = [0];
   for (let i = 1; i <= count; i++) arcs.push(arcs[i - 1] + length(minus(point(i), point(i - 1))));
   const tangents = arcs.map((_, i) => bisector(point(i + count - 1), point(i), point(i + 1)));
@@ -109,7 +135,8 @@ function addClosedTube(rings, points, taperLength, first) {
     const angle = (twist * arcs[i]) / (arcs[count] || 1);
     const beside = cross(tangents[i], sides[i]);
     const side = sides[i].map((x, axis) => Math.cos(angle) * x + Math.sin(angle) * beside[axis]);
-    rings.add(point(i), { tangent: tangents[i], side, other: cross(tangents[i], side) }, 1, 0, i === 0, first + i);
+    const up = unit(withoutPart(at(normals, i), tangents[i]));
+    rings.add(point(i), { tangent: tangents[i], side, other: cross(tangents[i], side), up }, 1, 0, i === 0, first + i);
   }
   rings.join(rings.vertexCount - SIDE_COUNT, start);
 }
@@ -146,14 +173,16 @@ function bisector(before, here, after) {
 
 // A unit vector across the tangent, turned as little as can be from the one before.
 function acrossTo(tangent, previous) {
-  const withoutTangent = (vector) => {
-    const along = dot(vector, tangent);
-    return vector.map((x, axis) => x - along * tangent[axis]);
-  };
-  const turned = previous ? withoutTangent(previous) : [0, 0, 0];
+  const turned = previous ? withoutPart(previous, tangent) : [0, 0, 0];
   if (length(turned) > 1e-6) return unit(turned);
   const least = tangent.map(Math.abs).reduce((best, x, axis, all) => (x < all[best] ? axis : best), 0);
-  return unit(withoutTangent([0, 1, 2].map((axis) => (axis === least ? 1 : 0))));
+  return unit(withoutPart([0, 1, 2].map((axis) => (axis === least ? 1 : 0)), tangent));
+}
+
+// A vector without its part along a unit vector.
+function withoutPart(vector, direction) {
+  const along = dot(vector, direction);
+  return vector.map((x, axis) => x - along * direction[axis]);
 }
 
 const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -7,19 +7,18 @@ class View {
     this.mmPerPixel = 1;
   }
 
-  // Look as a standard view does, at all of some clouds, each of `points` (flat coordinates) with room of `radii` around
-  // them, in a picture of a size in pixels of which some at the left and at the right are taken.
+  // Look as a standard view does, at all of some clouds of points (flat coordinates), in a picture of a size in pixels of
+  // which some at the left and at the right are taken.
   frame(rotation, clouds, [width, height], [left, right], margin) {
     this.rotation = rotation;
     const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
-    for (const { points, radii } of clouds) {
+    for (const points of clouds) {
       for (let i = 0; i < points.length; i += 3) {
         for (let axis = 0; axis < 3; axis++) {
           const [x, y, z] = rotation[axis];
           const seen = x * points[i] + y * points[i + 1] + z * points[i + 2];
-          const room = radii ? radii[i / 3] : 0;
-          if (seen - room < low[axis]) low[axis] = seen - room;
-          if (seen + room > high[axis]) high[axis] = seen + room;
+          if (seen < low[axis]) low[axis] = seen;
+          if (seen > high[axis]) high[axis] = seen;
         }
       }
     }
