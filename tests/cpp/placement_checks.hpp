@@ -198,6 +198,23 @@ inline void check_self_separation(const Placement& placement, double separation)
   }
 }
 
+/// With exact occupancy: each streamline had, somewhere, room to start beside those placed before it.
+inline void check_room_to_start(const Placement& placement) {
+  const auto segments = segments_of(placement);
+  const Clearance clearance{placement.options.test_distance, placement.options.seed_clearance};
+  std::vector<double> greatest(placement.lengths.size(), 0);
+  for (const auto& segment : segments) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const auto& other : segments) {
+      if (other.line >= segment.line) break;
+      if (segment.is_farther_than(other, 3 * other.separation_distance)) continue;
+      least = std::min(least, seed_room(segment, other, clearance));
+    }
+    greatest[segment.line] = std::max(greatest[segment.line], least);
+  }
+  for (const double room : greatest) CHECK(room >= 1);
+}
+
 /// With exact occupancy: no chord is left at which a streamline could start.
 inline void check_complete(const SurfaceMesh& mesh, const OrientationField& field, const Placement& placement,
                            int chords_per_triangle = 20) {
