@@ -125,7 +125,13 @@ def _add_placement(parser: argparse.ArgumentParser) -> None:
     add("--occupancy", "occupancy", str, "MODEL", "exact, or the paper's edge_mask")
     add("--seeds", "seed_count", whole, "N", "candidates a step of the paper's methods, of which the longest is kept")
     add("--seed-distance-factor", "seed_distance_factor", float, "FACTOR", "of method distance, in separations")
-    add("--seed-clearance", "seed_clearance", float, "FACTOR", "place only where some point is this many separations from all others")
+    add(
+        "--seed-clearance",
+        "seed_clearance",
+        float,
+        "FACTOR",
+        "place only where some point is this many separations from all others",
+    )
     add("--test-distance", "test_distance", float, "FACTOR", "run on until this many separations from others")
     add("--minimum-length", "minimum_length", float, "MM", "shorter streamlines are not placed")
     add("--singularity-radius", "singularity_radius", float, "MM", "stop this near to singularities of the field")
