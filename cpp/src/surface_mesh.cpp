@@ -24,6 +24,8 @@ void reverse_triangles(const std::vector<bool>& reverse, std::vector<Triangle>& 
       std::swap(triangles[t][1], triangles[t][2]);
       std::swap(topology.triangle_edges[t][0], topology.triangle_edges[t][2]);
       std::swap(topology.neighbours[t][0], topology.neighbours[t][2]);
+      const int along = topology.side_runs_along[t];
+      topology.side_runs_along[t] = static_cast<std::uint8_t>(~((along >> 2 & 1) | (along & 2) | (along & 1) << 2) & 7);
     }
     for (auto& across : topology.neighbours[t]) {
       if (across.triangle >= 0 && reverse[across.triangle]) across.side = reversed_side[across.side];
@@ -71,7 +73,7 @@ SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangl
   }
   soup = detail::split_vertices(std::move(soup), topology);
 
-  auto orientation = detail::find_orientation(soup.triangles, topology.neighbours);
+  auto orientation = detail::find_orientation(topology);
   loops_ =
       detail::find_boundary_loops(soup.vertices, soup.triangles, topology.neighbours, orientation.triangle_components);
   const auto inwards = detail::points_inwards(soup.vertices, soup.triangles, topology.neighbours, orientation, loops_);
@@ -96,6 +98,7 @@ SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangl
   edge_offsets_ = std::move(topology.edge_offsets);
   edge_triangles_ = std::move(topology.edge_triangles);
   neighbours_ = std::move(topology.neighbours);
+  side_runs_along_ = std::move(topology.side_runs_along);
   triangle_components_ = orientation.triangle_components;
   measure();
   components_ = count_components(triangles_, vertices_.size(), neighbours_, areas_, loops_, orientation);
@@ -104,7 +107,6 @@ SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangl
 void SurfaceMesh::measure() {
   areas_.reserve(triangles_.size());
   normals_.reserve(triangles_.size());
-  side_runs_along_.reserve(triangles_.size());
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const auto& [a, b, c] = triangles_[t];
     const detail::Vector normal =
@@ -113,12 +115,6 @@ void SurfaceMesh::measure() {
     areas_.push_back(twice_area / 2);
     normals_.push_back(detail::vec3(normal / twice_area));
     area_ += areas_.back();
-    std::uint8_t along = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto first = edges_[triangle_edges_[t][k]][0];  // still numbered as before vertices were split
-      along |= static_cast<std::uint8_t>((input_vertex_[triangles_[t][k]] == input_vertex_[first]) << k);
-    }
-    side_runs_along_.push_back(along);
   }
   edge_lengths_.reserve(edges_.size());
   for (const auto& [a, b] : edges_) {

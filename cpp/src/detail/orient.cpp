@@ -12,19 +12,16 @@ namespace {
 /// Below this volume over area^1.5 (a sphere has 0.094) inside and outside are no matter of the surface's shape.
 constexpr double least_relative_volume = 1e-3;
 
-/// Do two joined sides run the same way round? Then one of their triangles must be reversed.
-bool run_alike(const std::vector<Triangle>& triangles, std::int32_t t, int k, SideNeighbour other) {
-  return triangles[t][k] == triangles[other.triangle][other.side];
-}
-
 }  // namespace
 
-Orientation find_orientation(const std::vector<Triangle>& triangles,
-                             const std::vector<std::array<SideNeighbour, 3>>& neighbours) {
+Orientation find_orientation(const Topology& topology) {
   constexpr std::int32_t none = -1;
-  Orientation result{std::vector<std::int32_t>(triangles.size(), none), {}, std::vector<bool>(triangles.size(), false)};
+  const auto& neighbours = topology.neighbours;
+  const auto count = static_cast<std::int32_t>(neighbours.size());
+  Orientation result{std::vector<std::int32_t>(count, none), {}, std::vector<bool>(count, false)};
   std::vector<std::int32_t> members;
-  for (std::int32_t start = 0; start < static_cast<std::int32_t>(triangles.size()); ++start) {
+  members.reserve(count);
+  for (std::int32_t start = 0; start < count; ++start) {
     if (result.triangle_components[start] != none) continue;
     const auto component = static_cast<std::int32_t>(result.orientable.size());
     result.orientable.push_back(true);
@@ -33,16 +30,18 @@ Orientation find_orientation(const std::vector<Triangle>& triangles,
     std::size_t reversed = 0;
     for (std::size_t i = 0; i < members.size(); ++i) {
       const auto t = members[i];
-      reversed += result.reverse[t];
+      const bool is_reversed = result.reverse[t];
+      reversed += is_reversed;
       for (int k = 0; k < 3; ++k) {
-        const auto other = neighbours[t][k];
-        if (other.triangle < 0) continue;
-        const bool reverse = result.reverse[t] != run_alike(triangles, t, k, other);
-        if (result.triangle_components[other.triangle] == none) {
-          result.triangle_components[other.triangle] = component;
-          result.reverse[other.triangle] = reverse;
-          members.push_back(other.triangle);
-        } else if (result.reverse[other.triangle] != reverse) {
+        const auto other = neighbours[t][k].triangle;
+        if (other < 0) continue;
+        const bool reverse = is_reversed != static_cast<bool>(topology.side_runs_alike[t] >> k & 1);
+        if (result.triangle_components[other] == none) {
+          result.triangle_components[other] = component;
+          result.reverse[other] = reverse;
+          members.push_back(other);
+          __builtin_prefetch(&neighbours[other]);  // by the time its turn comes it will be at hand
+        } else if (result.reverse[other] != reverse) {
           result.orientable.back() = false;
         }
       }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "detail/topology.hpp"
 #include "pectinate/surface_mesh.hpp"
 
 namespace pectinate::detail {
@@ -18,8 +19,7 @@ struct Orientation {
 
 /// Finds the components and the reversals that make neighbours agree, against as few input windings as possible.
 /// Where a component is not orientable, neighbours disagree along a seam.
-Orientation find_orientation(const std::vector<Triangle>& triangles,
-                             const std::vector<std::array<SideNeighbour, 3>>& neighbours);
+Orientation find_orientation(const Topology& topology);
 
 /// For each component: do its normals point inwards? Told by the volume under it, with its openings closed by fans;
 /// never for non-orientable or (nearly) flat ones.

@@ -15,6 +15,9 @@ struct Topology {
   std::vector<std::array<std::int32_t, 3>> triangle_edges;
   std::vector<std::int32_t> edge_offsets, edge_triangles;
   std::vector<std::array<SideNeighbour, 3>> neighbours;
+  /// Per triangle, a bit for each side: it runs from the first end of its edge to the second; it runs the same way
+  /// round as the side that it is joined to, so that one of the two triangles must be reversed.
+  std::vector<std::uint8_t> side_runs_along, side_runs_alike;
   std::vector<std::int32_t> cut_edges;  ///< edges with more than two triangles
 };
 

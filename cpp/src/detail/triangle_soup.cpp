@@ -53,24 +53,26 @@ bool is_degenerate(const Triangle& t, std::span<const Vec3> vertices) {
 std::vector<std::int32_t> find_repetitions(std::span<const Triangle> triangles, std::size_t vertex_count,
                                            const std::vector<std::int32_t>& candidates) {
   struct Corners {
-    Triangle sorted;
-    std::int32_t triangle;
+    std::uint64_t others;  // the two greater ones
+    std::int32_t least, triangle;
   };
   std::vector<Corners> all;
   all.reserve(candidates.size());
   for (const auto t : candidates) {
-    all.push_back({triangles[t], t});
-    std::sort(all.back().sorted.begin(), all.back().sorted.end());
+    auto sorted = triangles[t];
+    std::sort(sorted.begin(), sorted.end());
+    const auto others = static_cast<std::uint64_t>(sorted[1]) << 32 | static_cast<std::uint64_t>(sorted[2]);
+    all.push_back({others, sorted[0], t});
   }
   std::vector<std::int32_t> repeated;
-  Buckets<Corners> by_least(all, vertex_count, [](const Corners& corners) { return corners.sorted[0]; });
+  Buckets<Corners> by_least(all, vertex_count, [](const Corners& corners) { return corners.least; });
   for (std::size_t v = 0; v < by_least.count(); ++v) {
     const auto bucket = by_least.bucket(v);
     std::sort(bucket.begin(), bucket.end(), [](const Corners& a, const Corners& b) {
-      return a.sorted != b.sorted ? a.sorted < b.sorted : a.triangle < b.triangle;
+      return a.others != b.others ? a.others < b.others : a.triangle < b.triangle;
     });
     for (std::size_t i = 1; i < bucket.size(); ++i) {
-      if (bucket[i].sorted == bucket[i - 1].sorted) repeated.push_back(bucket[i].triangle);
+      if (bucket[i].others == bucket[i - 1].others) repeated.push_back(bucket[i].triangle);
     }
   }
   std::sort(repeated.begin(), repeated.end());
@@ -112,6 +114,8 @@ TriangleSoup clean_triangle_soup(std::span<const Vec3> vertices, std::span<const
                       " triangles is valid (finite, with an area); check the coordinates and the indices");
   }
 
+  soup.vertices.reserve(vertices.size());
+  soup.input_vertex.reserve(vertices.size());
   constexpr std::int32_t unused = -1;
   std::vector<std::int32_t> compact(vertices.size(), unused);
   for (const auto t : soup.input_triangle) {
