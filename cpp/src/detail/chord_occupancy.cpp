@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "detail/chord_shadow.hpp"
 #include "detail/chords_near_vertices.hpp"
 
 namespace pectinate::detail {
@@ -319,6 +318,26 @@ void ChordOccupancy::mark(std::int32_t triangle, const Polyline& line, std::size
   changed_.push_back(triangle);
 }
 
+/// Adds the chords that one capsule takes.
+void ChordOccupancy::mark_chords(std::int32_t triangle, const ChordFrame& frame, const GuardedCapsule& guarded,
+                                 IntervalSets& sets) {
+  const auto& [capsule, margin] = guarded;
+  const auto reach = frame.reach(capsule);
+  if (!reach) return;
+  const Interval within{std::max(0.0, reach->low), std::min(1.0, reach->high)};
+  if (within.low > within.high || sets.contains(triangle, within)) return;
+  const auto view = frame.look(capsule);
+  if (&sets == &unseeded_) {
+    for (const auto& chords : frame.core(capsule, view)) {
+      if (chords) sets.add(triangle, *chords);
+    }
+  } else if (const auto chords = frame.shadow(capsule, view)) {
+    const Interval taken{chords->low - margin, chords->high + margin};
+    sets.add(triangle, taken);
+    if (has_seed_sets_) unseeded_.add(triangle, taken);
+  }
+}
+
 void ChordOccupancy::mark_exactly(std::int32_t triangle, const Polyline& line, std::size_t first,
                                   const Marking& marking) {
   auto& sets = marking.sets;
@@ -338,21 +357,7 @@ void ChordOccupancy::mark_exactly(std::int32_t triangle, const Polyline& line, s
     const auto [is_before_start, is_beyond_end] = frame.range_along(capsule);
     if (is_beyond_end && i + 1 < block_.segments.count && separations[1] >= separations[0]) return true;
     if (is_before_start && i > 0 && !is_left_to_next && separations[-1] >= separations[0]) return false;
-    const auto reach = frame.reach(capsule);
-    if (!reach) return false;
-    const Interval within{std::max(0.0, reach->low), std::min(1.0, reach->high)};
-    if (within.low > within.high || sets.contains(triangle, within)) return false;
-    const auto view = frame.look(capsule);
-    if (&sets == &unseeded_) {
-      for (const auto& chords : frame.core(capsule, view)) {
-        if (chords) sets.add(triangle, *chords);
-      }
-    } else if (const auto chords = frame.shadow(capsule, view)) {
-      const double margin = guard * *separations / frame.width();
-      const Interval taken{chords->low - margin, chords->high + margin};
-      sets.add(triangle, taken);
-      if (has_seed_sets_) unseeded_.add(triangle, taken);
-    }
+    mark_chords(triangle, frame, {capsule, guard * *separations / frame.width()}, sets);
     return false;
   };
   bool is_left_to_next = false;

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "detail/chord_shadow.hpp"
 #include "detail/interval_sets.hpp"
 #include "detail/large_array.hpp"
 #include "detail/sheet.hpp"
@@ -124,6 +125,11 @@ class ChordOccupancy {
   void mark(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking);
   bool lies_in_capsule(const Reached& reached, const Marking& marking) const;
   void fill(std::int32_t triangle, IntervalSets& sets);
+  struct GuardedCapsule {
+    Capsule capsule;
+    double margin;  ///< of rounding, in chord coordinates
+  };
+  void mark_chords(std::int32_t triangle, const ChordFrame& frame, const GuardedCapsule& guarded, IntervalSets& sets);
   void mark_exactly(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking);
   double greatest_clearance() const { return std::max(clearance_.stop, clearance_.seed); }
   double separation(std::int32_t triangle) const {
