@@ -293,4 +293,15 @@ TEST_CASE("exact placement: spirals keep from themselves, however many of their 
   }
 }
 
+TEST_CASE("exact placement: where candidates run on beside one another, most are dropped and no gap is left") {
+  const auto mesh = jittered_grid(48, 36).mesh();
+  const auto field = field_of(mesh, [](const Vector& c, const Vector&) {
+    const Vector r = c - Vector(24.3, 18.2, 0);
+    return Vector(-r.y() + 0.01 * r.x(), r.x() + 0.01 * r.y(), 0);
+  });
+  const auto placement = checked(mesh, field, with(0.1));
+  CHECK(placement.statistics.coverage > 1 - 1e-6);
+  check_segment_separation(placement, 0.1);
+}
+
 }  // namespace pectinate::test

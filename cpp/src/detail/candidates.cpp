@@ -7,13 +7,15 @@
 namespace pectinate::detail {
 namespace {
 
-/// Room for stored chords per triangle.
-constexpr std::size_t most_usual_chords = 4;
+/// Stored chords per triangle: for so many there is room at first, and with so many it is enough.
+constexpr std::size_t most_usual_chords = 4, too_many_chords = 16;
 
 }  // namespace
 
 Candidates::Candidates(std::size_t triangle_count, double minimum_length)
-    : minimum_length_(minimum_length), most_chords_(most_usual_chords * triangle_count) {
+    : minimum_length_(minimum_length),
+      most_chords_(most_usual_chords * triangle_count),
+      too_many_chords_(too_many_chords * triangle_count) {
   chords_.reserve(most_chords_);
 }
 
@@ -52,6 +54,18 @@ void Candidates::prefetch_next() const {
 
 bool Candidates::is_first(double length, std::int32_t trajectory) const {
   return length >= minimum_length_ && (heap_.empty() || length * trajectories_[trajectory].bonus >= heap_.front().key);
+}
+
+void Candidates::drop_shortest() {
+  std::sort(heap_.begin(), heap_.end(), [](const Piece& a, const Piece& b) { return b < a; });
+  auto room = static_cast<std::int64_t>(too_many_chords_ / 2);
+  std::size_t kept = 0;
+  while (kept < heap_.size() && room > 0) {
+    room -= heap_[kept].stretch.last - heap_[kept].stretch.first;
+    ++kept;
+  }
+  heap_.resize(kept);
+  drop_dead_chords();
 }
 
 void Candidates::drop_dead_chords() {

@@ -39,6 +39,10 @@ class Candidates {
   /// Is there little room for more chords? Then those that no piece holds can be dropped, except where pieces were cut
   /// off. Trajectories get other numbers and chords other places; the order of pieces stays.
   bool are_many() const { return chords_.size() > most_chords_ / 8 * 7; }
+  /// Where trajectories run on and on beside one another they might take any amount of memory. Then the shortest pieces
+  /// can be dropped as well.
+  bool are_too_many() const { return chords_.size() > too_many_chords_; }
+  void drop_shortest();
   void drop_dead_chords();
 
  private:
@@ -48,7 +52,7 @@ class Candidates {
   Chords chords_;
   std::vector<Trajectory> trajectories_;
   std::vector<Piece> heap_;
-  std::size_t most_chords_;
+  std::size_t most_chords_, too_many_chords_;
 };
 
 }  // namespace pectinate::detail

@@ -51,9 +51,9 @@ class LongestFirst {
   bool run(const std::function<bool()>& go_on) {
     if (!fill_pool(go_on) || !empty_heap(go_on)) return false;
     // Where all gaps together gave no streamline, they never will.
-    for (std::int64_t before = -1; before != placed_count_ && push_gaps(go_on);) {
+    for (std::int64_t before = -1; before != placed_count_;) {
       before = placed_count_;
-      if (!empty_heap(go_on)) return false;
+      if (!fill_gaps(go_on)) return false;
     }
     return true;
   }
@@ -184,6 +184,10 @@ class LongestFirst {
     }
     ++round_;
     for (const auto t : occupancy_.changed()) {
+      if (candidates_.are_too_many()) {  // in the end every gap gets one
+        candidates_.drop_shortest();
+        self_free_parts_.forget();
+      }
       if (hugged_[t] == round_ || occupancy_.unseeded().is_full(t)) continue;
       hugged_[t] = round_;
       const double gap = hugging_gap * separation(t) / crossings_[t].width;
@@ -198,24 +202,22 @@ class LongestFirst {
     }
   }
 
-  /// A candidate through every gap that is left; false if none is, or if it was stopped.
-  bool push_gaps(const std::function<bool()>& go_on) {
-    bool any = false;
+  /// Candidates through all gaps that are left, and what of them fits; false if it was stopped.
+  bool fill_gaps(const std::function<bool()>& go_on) {
     for (const auto t : sheet_.ranks) {
       if (occupancy_.unseeded().is_full(t)) continue;
       for (const auto& gap : occupancy_.unseeded().gaps(t)) {
         if (gap.high - gap.low < least_gap) continue;
-        if (!go_on()) return true;  // the heap says so too
+        if (!go_on()) return false;
+        if (candidates_.are_too_many() && !empty_heap(go_on)) return false;
+        const double middle = (gap.low + gap.high) / 2;
+        if (occupancy_.unseeded().contains(t, middle)) continue;
         const auto before = candidates_.piece_count();
-        add_trajectory(t, (gap.low + gap.high) / 2, true, 1);
-        if (candidates_.piece_count() == before) {
-          occupancy_.retire_seed(t, gap);
-        } else {
-          any = true;
-        }
+        add_trajectory(t, middle, true, 1);
+        if (candidates_.piece_count() == before) occupancy_.retire_seed(t, gap);
       }
     }
-    return any;
+    return empty_heap(go_on);
   }
 
   // Placement -------------------------------------------------------------------------------------------------------
