@@ -92,8 +92,8 @@ double point_at(const std::vector<PolylinePoint>& points, double arc) {
   return before.point + (arc - before.arc) / (after->arc - before.arc);
 }
 
-/// Fills long segments so that the taper is followed, or a closed tube has rings enough to be one, and leaves out points
-/// too close for rings. The two ends stay.
+/// Fills long segments so that the taper is followed, or a closed tube has rings enough to be one, and leaves out
+/// points too close for rings. The two ends stay.
 std::vector<PolylinePoint> resample(const std::vector<PolylinePoint>& points, bool is_closed,
                                     const TubeOptions& options) {
   const double length = points.back().arc;
