@@ -103,12 +103,16 @@ void bind_result(py::module_& module) {
       .def_readonly("end", &Placement::end);
 }
 
-}  // namespace
-
-void bind_placement(py::module_& module) {
+void bind_types(py::module_& module) {
   bind_enumerations(module);
   bind_statistics(module);
   bind_result(module);
+}
+
+}  // namespace
+
+void bind_placement(py::module_& module) {
+  bind_types(module);
   const PlacementOptions defaults;
   module.def(
       "place_streamlines",
