@@ -69,10 +69,10 @@ std::vector<PolylinePoint> polyline(const SurfaceMesh& mesh, const Placement& pl
   const auto normal_of = [&](std::int64_t segment) {
     return vector(mesh.triangle_normals()[placement.segment_triangles[segment - static_cast<std::int64_t>(i)]]);
   };
+  const bool wraps = is_closed(placement, i);
   std::vector<PolylinePoint> points;
   for (auto p = first; p <= last; ++p) {
     const Vector place = vector(placement.points[p]);
-    const bool wraps = is_closed(placement, i);
     const Vector before = normal_of(p > first ? p - 1 : (wraps ? last - 1 : first));
     const Vector after = normal_of(p < last ? p : (wraps ? first : last - 1));
     // Neighbours of a surface that cannot be oriented may disagree on their side.

@@ -47,7 +47,8 @@ class Occupancy {
 /// How near streamlines may come to placed ones, in separation distances.
 struct Clearance {
   double stop = 1;  ///< a streamline runs on until it is this close
-  double seed = 1;  ///< it starts only where nothing is this close; at least `stop`
+  /// It starts only at chords of which some point is this far from every segment placed; at least `stop`.
+  double seed = 1;
 };
 
 /// What streamlines stay out of, because the field is singular there: of the surface, what is joined to one of these

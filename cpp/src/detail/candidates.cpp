@@ -56,16 +56,22 @@ bool Candidates::is_first(double length, std::int32_t trajectory) const {
   return length >= minimum_length_ && (heap_.empty() || length * trajectories_[trajectory].bonus >= heap_.front().key);
 }
 
+bool Candidates::make_room() {
+  if (!are_too_many() && chords_.size() <= most_chords_ / 8 * 7) return false;
+  std::size_t held = 0;
+  for (const auto& piece : heap_) held += static_cast<std::size_t>(piece.stretch.last - piece.stretch.first);
+  if (held > too_many_chords_) drop_shortest();
+  drop_dead_chords();
+  return true;
+}
+
+/// Keeps the longest pieces, half as many chords as would be too many.
 void Candidates::drop_shortest() {
   std::sort(heap_.begin(), heap_.end(), [](const Piece& a, const Piece& b) { return b < a; });
   auto room = static_cast<std::int64_t>(too_many_chords_ / 2);
   std::size_t kept = 0;
-  while (kept < heap_.size() && room > 0) {
-    room -= heap_[kept].stretch.last - heap_[kept].stretch.first;
-    ++kept;
-  }
+  for (; kept < heap_.size() && room > 0; ++kept) room -= heap_[kept].stretch.last - heap_[kept].stretch.first;
   heap_.resize(kept);
-  drop_dead_chords();
 }
 
 void Candidates::drop_dead_chords() {

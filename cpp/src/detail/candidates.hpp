@@ -18,7 +18,6 @@ class Candidates {
 
   /// All chords, one trajectory after the other; who adds some makes a trajectory of them.
   Chords& chords() { return chords_; }
-  const Chord& chord(std::int64_t index) const { return chords_[index]; }
   std::span<const Chord> chords_of(const Stretch& stretch) const {
     return {chords_.data() + stretch.first, chords_.data() + stretch.last};
   }
@@ -36,17 +35,17 @@ class Candidates {
   /// Would a stretch of this length come first?
   bool is_first(double length, std::int32_t trajectory) const;
 
-  /// Is there little room for more chords? Then those that no piece holds can be dropped, except where pieces were cut
-  /// off. Trajectories get other numbers and chords other places; the order of pieces stays.
-  bool are_many() const { return chords_.size() > most_chords_ / 8 * 7; }
-  /// Where trajectories run on and on beside one another they might take any amount of memory. Then the shortest pieces
-  /// can be dropped as well.
+  /// Where trajectories run on and on beside one another they might take any amount of memory.
   bool are_too_many() const { return chords_.size() > too_many_chords_; }
-  void drop_shortest();
-  void drop_dead_chords();
+  /// Where little room for more chords is left, drops those that no piece holds, except where pieces were cut off; and
+  /// where even so they are too many, the shortest pieces. Did it? Then trajectories have other numbers and chords
+  /// other places; the order of pieces stays.
+  bool make_room();
 
  private:
   void prefetch_next() const;
+  void drop_shortest();
+  void drop_dead_chords();
 
   double minimum_length_;
   Chords chords_;

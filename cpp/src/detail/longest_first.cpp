@@ -176,18 +176,15 @@ class LongestFirst {
     return sum / static_cast<double>(mesh_.edge_lengths().size());
   }
 
+  void make_room() {
+    if (candidates_.make_room()) self_free_parts_.forget();
+  }
+
   /// Candidates that lie just outside the band of the streamline placed last.
   void push_hugging() {
-    if (candidates_.are_many()) {
-      candidates_.drop_dead_chords();
-      self_free_parts_.forget();
-    }
     ++round_;
     for (const auto t : occupancy_.changed()) {
-      if (candidates_.are_too_many()) {  // in the end every gap gets one
-        candidates_.drop_shortest();
-        self_free_parts_.forget();
-      }
+      make_room();  // what goes for want of it comes back when gaps are filled
       if (hugged_[t] == round_ || occupancy_.unseeded().is_full(t)) continue;
       hugged_[t] = round_;
       const double gap = hugging_gap * separation(t) / crossings_[t].width;
@@ -209,7 +206,10 @@ class LongestFirst {
       for (const auto& gap : occupancy_.unseeded().gaps(t)) {
         if (gap.high - gap.low < least_gap) continue;
         if (!go_on()) return false;
-        if (candidates_.are_too_many() && !empty_heap(go_on)) return false;
+        if (candidates_.are_too_many()) {
+          if (!empty_heap(go_on)) return false;
+          make_room();
+        }
         const double middle = (gap.low + gap.high) / 2;
         if (occupancy_.unseeded().contains(t, middle)) continue;
         const auto before = candidates_.piece_count();

@@ -8,24 +8,6 @@
 namespace pectinate::detail {
 namespace {
 
-/// Disjoint sets with path halving; the smallest member represents its set.
-class UnionFind {
- public:
-  explicit UnionFind(std::size_t size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  std::int32_t find(std::int32_t i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(std::int32_t i, std::int32_t j) {
-    i = find(i);
-    j = find(j);
-    parent_[std::max(i, j)] = std::min(i, j);
-  }
-
- private:
-  std::vector<std::int32_t> parent_;
-};
-
 struct Side {
   std::int32_t triangle;
   std::int8_t side;
@@ -77,27 +59,39 @@ void join_sides(const Side& a, const Side& b, Topology& topology) {
   topology.side_runs_alike[b.triangle] |= static_cast<std::uint8_t>(1 << b.side);
 }
 
-/// The corner (3 t + k) of a side's triangle that lies at `vertex`.
-std::int32_t corner_at(const std::vector<Triangle>& triangles, const Side& side, std::int32_t vertex) {
+struct Corner {
+  std::int32_t triangle;
+  int corner;
+
+  bool operator==(const Corner&) const = default;
+};
+
+/// The corner of a side's triangle that lies at one of the side's ends.
+Corner corner_at(const std::vector<Triangle>& triangles, const Side& side, std::int32_t vertex) {
   const int k = triangles[side.triangle][side.side] == vertex ? side.side : (side.side + 1) % 3;
-  return 3 * side.triangle + k;
+  return {side.triangle, k};
 }
 
-/// The fans of triangles: corners joined across joined sides.
-UnionFind find_fans(const std::vector<Triangle>& triangles,
-                    const std::vector<std::array<SideNeighbour, 3>>& neighbours) {
-  UnionFind fans(3 * triangles.size());
-  for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles.size()); ++t) {
-    for (std::int8_t k = 0; k < 3; ++k) {
-      const auto [u, m] = neighbours[t][k];
-      if (u < t) continue;
-      const Side other{u, m};
-      for (const int end : {int{k}, (k + 1) % 3}) {
-        fans.join(3 * t + end, corner_at(triangles, other, triangles[t][end]));
-      }
+using Neighbours = std::vector<std::array<SideNeighbour, 3>>;
+
+/// Calls visit(corner) for all corners of the fan of triangles around a vertex, given one of them: across the sides
+/// that are joined, until a border or once round.
+template <class Visit>
+void visit_fan(const std::vector<Triangle>& triangles, const Neighbours& neighbours, const Corner& start,
+               const Visit& visit) {
+  const auto vertex = triangles[start.triangle][start.corner];
+  visit(start);
+  for (const int first : {start.corner, (start.corner + 2) % 3}) {
+    auto side = first;
+    for (auto t = start.triangle; neighbours[t][side].triangle >= 0;) {
+      const auto [next, m] = neighbours[t][side];
+      const auto corner = corner_at(triangles, {next, m}, vertex);
+      if (corner == start) return;
+      visit(corner);
+      t = next;
+      side = m == corner.corner ? (corner.corner + 2) % 3 : corner.corner;
     }
   }
-  return fans;
 }
 
 /// An edge with more than two triangles.
@@ -106,73 +100,29 @@ struct CutEdge {
   std::vector<Side> sides;
 };
 
-/// Joins those two triangles of a cut edge whose fans meet at both of its ends.
+/// Joins those two triangles of a cut edge whose fans meet at both of its ends, before any are joined.
 void rejoin_slits(const std::vector<Triangle>& triangles, const std::vector<CutEdge>& cuts, Topology& topology) {
-  if (cuts.empty()) return;
-  auto fans = find_fans(triangles, topology.neighbours);
-  const auto is_open = [&](const Side& side) { return topology.neighbours[side.triangle][side.side].triangle < 0; };
+  const auto share_fan = [&](const Side& a, const Side& b, std::int32_t vertex) {
+    const auto goal = corner_at(triangles, b, vertex);
+    bool is_met = false;
+    visit_fan(triangles, topology.neighbours, corner_at(triangles, a, vertex),
+              [&](const Corner& corner) { is_met = is_met || corner == goal; });
+    return is_met;
+  };
+  std::vector<std::array<Side, 2>> slits;
   for (const auto& [ends, sides] : cuts) {
-    const auto same_fans = [&](const Side& a, const Side& b) {
-      return std::all_of(ends.begin(), ends.end(), [&](auto vertex) {
-        return fans.find(corner_at(triangles, a, vertex)) == fans.find(corner_at(triangles, b, vertex));
-      });
-    };
+    std::vector<bool> is_joined(sides.size(), false);
     for (std::size_t i = 0; i < sides.size(); ++i) {
       for (auto j = i + 1; j < sides.size(); ++j) {
-        if (is_open(sides[i]) && is_open(sides[j]) && same_fans(sides[i], sides[j])) {
-          join_sides(sides[i], sides[j], topology);
-        }
+        if (is_joined[i] || is_joined[j]) continue;
+        if (!share_fan(sides[i], sides[j], ends[0]) || !share_fan(sides[i], sides[j], ends[1])) continue;
+        is_joined[i] = is_joined[j] = true;
+        slits.push_back({sides[i], sides[j]});
       }
     }
   }
+  for (const auto& [a, b] : slits) join_sides(a, b, topology);
 }
-
-/// Finds fans, each once: from one of its corners around the vertex, across the sides that are joined.
-class FanFinder {
- public:
-  struct Corner {
-    std::int32_t triangle;
-    int corner;
-  };
-
-  FanFinder(const std::vector<Triangle>& triangles, const std::vector<std::array<SideNeighbour, 3>>& neighbours)
-      : triangles_(triangles), neighbours_(neighbours), seen_(triangles.size(), 0) {}
-
-  bool was_seen(std::int32_t t, int k) const { return seen_[t] >> k & 1; }
-
-  /// All corners of a fan, given one.
-  const std::vector<Corner>& find(std::int32_t t, int k) {
-    fan_.clear();
-    add(t, k);
-    const auto vertex = triangles_[t][k];
-    go(vertex, {t, static_cast<std::int8_t>(k)});
-    go(vertex, {t, static_cast<std::int8_t>((k + 2) % 3)});
-    return fan_;
-  }
-
- private:
-  void add(std::int32_t t, int k) {
-    seen_[t] |= static_cast<std::uint8_t>(1 << k);
-    fan_.push_back({t, k});
-  }
-
-  /// Around a vertex, across a side and on.
-  void go(std::int32_t vertex, Side side) {
-    while (true) {
-      const auto [t, m] = neighbours_[side.triangle][side.side];
-      if (t < 0) return;
-      const int k = triangles_[t][m] == vertex ? m : (m + 1) % 3;
-      if (was_seen(t, k)) return;
-      add(t, k);
-      side = {t, static_cast<std::int8_t>(m == k ? (k + 2) % 3 : k)};
-    }
-  }
-
-  const std::vector<Triangle>& triangles_;
-  const std::vector<std::array<SideNeighbour, 3>>& neighbours_;
-  std::vector<std::uint8_t> seen_;  // a bit for each corner
-  std::vector<Corner> fan_;
-};
 
 }  // namespace
 
@@ -218,13 +168,18 @@ Topology make_topology(const TriangleSoup& soup) {
 
 TriangleSoup split_vertices(TriangleSoup soup, const Topology& topology) {
   auto& triangles = soup.triangles;
-  FanFinder fans(triangles, topology.neighbours);
+  std::vector<std::uint8_t> seen(triangles.size(), 0);  // a bit for each corner
   std::vector<bool> taken(soup.vertices.size(), false);
+  std::vector<Corner> fan;
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles.size()); ++t) {
     for (int k = 0; k < 3; ++k) {
-      if (fans.was_seen(t, k)) continue;
+      if (seen[t] >> k & 1) continue;
       const auto vertex = triangles[t][k];
-      const auto& fan = fans.find(t, k);
+      fan.clear();
+      visit_fan(triangles, topology.neighbours, {t, k}, [&](const Corner& corner) {
+        seen[corner.triangle] |= static_cast<std::uint8_t>(1 << corner.corner);
+        fan.push_back(corner);
+      });
       if (!taken[vertex]) {
         taken[vertex] = true;
         continue;
