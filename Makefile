@@ -24,7 +24,7 @@ PIP_INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 # Folders too: a file that goes away changes its folder.
 PACKAGE_SOURCES := CMakeLists.txt pyproject.toml \
   $(shell find bindings cpp/include cpp/src cpp/*.in python -not -name __pycache__ -not -name '*.pyc')
-CPP_FILES := $(shell find cpp bindings tests/cpp -name '*.[ch]pp')
+CPP_FILES := $(shell find cpp bindings tests/cpp -name '*.[ch]pp' -o -name '*.inl')
 
 .PHONY: help
 help:  ## show this list

@@ -86,6 +86,9 @@ SingularRegion singular_region(const SurfaceMesh& mesh, const OrientationField& 
   return region;
 }
 
+/// To look at the clock is not free.
+constexpr int questions_per_look = 8;
+
 /// Asks the user's callback now and then whether to go on.
 class Progress {
  public:
@@ -94,7 +97,8 @@ class Progress {
   /// `coverage` is a function: counting may take a while.
   template <class Coverage>
   bool is_cancelled(const Coverage& coverage) {
-    if (!callback_ || cancelled_ || Clock::now() - last_call_ < interval_) return cancelled_;
+    if (!callback_ || cancelled_ || question_count_++ % questions_per_look != 0) return cancelled_;
+    if (Clock::now() - last_call_ < interval_) return false;
     const auto start = Clock::now();
     cancelled_ = !callback_(coverage());
     last_call_ = Clock::now();
@@ -106,6 +110,7 @@ class Progress {
   const std::function<bool(double)>& callback_;
   Clock::time_point last_call_{};
   Clock::duration interval_ = progress_interval;
+  std::int64_t question_count_ = 0;
   bool cancelled_ = false;
 };
 

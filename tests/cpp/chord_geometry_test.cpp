@@ -2,12 +2,14 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <span>
 #include <vector>
 
+#include "detail/capsule.hpp"
 #include "detail/chord_shadow.hpp"
 #include "detail/closed_orbit.hpp"
 #include "detail/interval_sets.hpp"
@@ -114,26 +116,48 @@ struct RandomTriangle {
   ChordFrame frame;
 };
 
-/// The shadow holds the chords that come within the radius of the axis, no more and no less.
-void check_shadow(const RandomTriangle& triangle, const Capsule& capsule) {
-  const double tolerance = 1e-8 * (1 + capsule.radius);
-  const auto& frame = triangle.frame;
-  const Capsule flat{frame.flat(capsule.start), frame.flat(capsule.end), capsule.radius};
-  const auto reach = frame.reach(flat);
-  const auto shadow = reach ? frame.shadow(flat, frame.look(flat)) : std::nullopt;
-  if (shadow) {
-    CHECK(shadow->low <= shadow->high);
-    CHECK(shadow->low >= std::max(reach->low, 0.0) - 1e-9);
-    CHECK(shadow->high <= std::min(reach->high, 1.0) + 1e-9);
+/// One capsule in each lane: which one it is in must not matter.
+struct FourCapsules {
+  explicit FourCapsules(const Capsule& capsule, int lane, Random& random) {
+    for (int other = 0; other < capsule_lanes; ++other) {
+      const Vector move = other == lane ? Vector(0, 0, 0) : draw_vector(random, 0.1);
+      starts[other] = capsule.start + move;
+      ends[other] = capsule.end + move;
+      capsules.start[other] = &starts[other];
+      capsules.end[other] = &ends[other];
+      capsules.radius[other] = capsule.radius;
+    }
   }
+  std::array<Vector, capsule_lanes> starts, ends;
+  Capsules capsules{};
+};
+
+bool holds(const ChordIntervals& chords, int lane, double chord) {
+  return chords.low[lane] <= chord && chord <= chords.high[lane];
+}
+
+/// The shadow holds the chords that come within the radius of the axis, the core those all of which does, no more and
+/// no less.
+void check_shadow(const RandomTriangle& triangle, const Capsule& capsule, Random& random) {
+  const double tolerance = 1e-8 * (1 + capsule.radius);
+  const int lane = static_cast<int>(random.below(capsule_lanes));
+  const FourCapsules four(capsule, lane, random);
+  const auto shadows = chord_shadows(triangle.frame, four.capsules);
+  const auto cores = chord_cores(triangle.frame, four.capsules);
+  if (shadows.low[lane] <= shadows.high[lane]) CHECK((shadows.low[lane] >= 0 && shadows.high[lane] <= 1));
   for (int i = 0; i <= 60; ++i) {
     const double chord = std::clamp(i / 60.0, 1e-6, 1 - 1e-6);
     const auto piece = test::chord_segment(triangle.sheet, 0, chord);
     const double distance = segment_distance(piece.start, piece.end, capsule.start, capsule.end);
-    if (std::abs(distance - capsule.radius) < tolerance) continue;
-    const bool inside = shadow && shadow->low <= chord && chord <= shadow->high;
-    CHECK(inside == (distance < capsule.radius));
-    if (distance < capsule.radius) CHECK((reach && reach->low <= chord && chord <= reach->high));
+    if (std::abs(distance - capsule.radius) >= tolerance) {
+      CHECK(holds(shadows, lane, chord) == (distance < capsule.radius));
+    }
+    const double farthest = std::max(distance_to_segment(piece.start, capsule.start, capsule.end),
+                                     distance_to_segment(piece.end, capsule.start, capsule.end));
+    if (std::abs(farthest - capsule.radius) >= tolerance) {
+      const bool is_in_core = holds(cores[0], lane, chord) || holds(cores[1], lane, chord);
+      CHECK(is_in_core == (farthest < capsule.radius));
+    }
   }
 }
 
@@ -302,7 +326,7 @@ TEST_CASE("chord shadow: the chords that enter a capsule, by definition") {
     const RandomTriangle triangle(random);
     const double radius = std::exp(-5 * random.unit()) * 1.5;
     const Vector start = triangle.draw_point(random) + draw_vector(random, 1.2 * radius);
-    check_shadow(triangle, {start, start + draw_vector(random, 2 * random.unit()), radius});
+    check_shadow(triangle, {start, start + draw_vector(random, 2 * random.unit()), radius}, random);
   }
 }
 
@@ -318,7 +342,7 @@ TEST_CASE("chord shadow: of capsules normal to the triangle, parallel to it, alo
       for (const double length : {0.0, 1e-14, 1e-7, 0.4, 5.0}) {
         for (const Vector& axis :
              {normal, along, across, Vector(along + 1e-9 * normal), Vector(-normal - 1e-8 * along)}) {
-          check_shadow(triangle, {start, start + length * axis, radius});
+          check_shadow(triangle, {start, start + length * axis, radius}, random);
         }
       }
     }
@@ -332,7 +356,7 @@ TEST_CASE("chord shadow: in triangles with a direction close to a side") {
       const RandomTriangle triangle(random, flatness);
       const double radius = 0.02 + 0.5 * random.unit();
       const Vector start = triangle.draw_point(random) + draw_vector(random, radius);
-      check_shadow(triangle, {start, start + draw_vector(random, 0.5), radius});
+      check_shadow(triangle, {start, start + draw_vector(random, 0.5), radius}, random);
     }
   }
 }

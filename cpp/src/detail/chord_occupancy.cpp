@@ -3,8 +3,11 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "detail/chords_near_vertices.hpp"
 
@@ -22,17 +25,13 @@ constexpr float size_slack = 4e-7F, distance_slack = 4e-6F;
 constexpr double coarse_tolerance = 0.03;
 constexpr std::size_t most_joined = 8;
 
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// In place of a distance that is not measured yet.
+constexpr float unknown = -1;
+
 /// In place of a neighbour: a border, or more than two triangles at the edge.
 constexpr std::int32_t none = -1;
-
-using Lanes = Eigen::Array<float, 8, 1>;
-
-auto lanes_at(float* values) {
-  return Eigen::Map<Lanes, Eigen::Aligned32>(values);
-}
-auto lanes_at(const float* values) {
-  return Eigen::Map<const Lanes, Eigen::Aligned32>(values);
-}
 
 }  // namespace
 
@@ -50,31 +49,7 @@ ChordOccupancy::ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& 
       origin_(vector(mesh.vertices()[0])),
       slack_(size_slack * static_cast<float>(mesh.bounding_box_diagonal())),
       tiles_(mesh.triangle_count()) {
-  std::vector<bool> on_border(mesh.vertices().size(), false);
-  for (const auto& loop : mesh.boundary_loops()) {
-    for (const auto v : loop.vertices) on_border[v] = true;
-  }
-  for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
-    auto& tile = tiles_[t];
-    const Vector a = sheet_.low(t) - origin_, b = sheet_.middle(t) - origin_, c = sheet_.high(t) - origin_;
-    const Vector centroid = (a + b + c) / 3;
-    const double square =
-        std::max({(a - centroid).squaredNorm(), (b - centroid).squaredNorm(), (c - centroid).squaredNorm()});
-    tile.x = static_cast<float>(centroid.x());
-    tile.y = static_cast<float>(centroid.y());
-    tile.z = static_cast<float>(centroid.z());
-    tile.radius = static_cast<float>(std::sqrt(square)) * (1 + distance_slack) + slack_;
-    tile.neighbours = sheet_.crossings[t].neighbours;
-    tile.round = 0;
-    if (sheet_.has_direction(t)) continue;
-    stopped_.fill(t);
-    if (has_seed_sets_) unseeded_.fill(t);
-  }
-  for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
-    const auto& corners = mesh.triangles()[t];
-    auto& radius = tiles_[sheet_.ranks[t]].radius;
-    if (on_border[corners[0]] || on_border[corners[1]] || on_border[corners[2]]) radius = -radius;
-  }
+  make_tiles();
   // Where the surface was cut it goes on for distances.
   for (std::int32_t edge = 0; edge < static_cast<std::int32_t>(mesh.edges().size()); ++edge) {
     const auto triangles = mesh.edge_triangles(edge);
@@ -85,6 +60,43 @@ ChordOccupancy::ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& 
     }
   }
   if (has_singular_) keep_out_of(singular);
+}
+
+void ChordOccupancy::make_tiles() {
+  using Point = Eigen::Array4f;
+  LargeArray<Point> points(sheet_.vertices.size());
+  for (std::size_t v = 0; v < points.size(); ++v) {
+    points[v] << (sheet_.vertices[v] - origin_).cast<float>().array(), 0.F;
+  }
+  LargeArray<std::uint8_t> is_on_border(points.size(), 0);
+  for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
+    const auto& [low, middle, high] = sheet_.corners[t];
+    const Point &a = points[low], &b = points[middle], &c = points[high];
+    const Point centroid = (a + b + c) * (1.F / 3);
+    const float square =
+        std::max({(a - centroid).square().sum(), (b - centroid).square().sum(), (c - centroid).square().sum()});
+    const auto& neighbours = sheet_.crossings[t].neighbours;
+    // Where single precision overflows, everything may be near.
+    const float radius = std::isfinite(square) ? std::sqrt(square) * (1 + distance_slack) + slack_ : infinity;
+    tiles_[t] = {centroid[0], centroid[1], centroid[2], radius, neighbours, 0};
+    for (const auto role : {low_high, low_middle, middle_high}) {
+      if (neighbours[role] >= 0 || !lies_on_border(t, role)) continue;
+      is_on_border[role == middle_high ? middle : low] = is_on_border[role == low_middle ? middle : high] = 1;
+    }
+    if (sheet_.has_direction(t)) continue;
+    stopped_.fill(t);
+    if (has_seed_sets_) unseeded_.fill(t);
+  }
+  for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
+    const auto& [low, middle, high] = sheet_.corners[t];
+    if (is_on_border[low] | is_on_border[middle] | is_on_border[high]) tiles_[t].radius *= -1;
+  }
+}
+
+/// Or is it one where the surface was cut?
+bool ChordOccupancy::lies_on_border(std::int32_t triangle, Role side) const {
+  const auto edge = edge_of(mesh_, sheet_.mesh_triangles[triangle], sheet_.crossings[triangle], side);
+  return mesh_.edge_triangles(edge).size() == 1;
 }
 
 void ChordOccupancy::keep_out_of(const SingularRegion& region) {
@@ -100,7 +112,7 @@ void ChordOccupancy::add(const Polyline& line) {
   for (std::size_t first = 0, last = 0; first < line.triangles.size(); first = last) {
     const double longest = block_length * separation(line.triangles[first]);
     double length = 0;
-    while (last < line.triangles.size() && length < longest && last - first < most_segments) {
+    while (last < line.triangles.size() && length < longest && last - first < Segments::most) {
       length += (line.points[last + 1] - line.points[last]).norm();
       ++last;
     }
@@ -128,63 +140,58 @@ void ChordOccupancy::add_block(const Polyline& line, std::size_t first, std::siz
   ++round_;
   queue_.clear();
   for (auto i = first; i < last; ++i) reach(line.triangles[i], std::abs(tiles_[line.triangles[i]].radius));
-  for (std::size_t i = 0; i < queue_.size(); ++i) visit(queue_[i], line, first);
-}
-
-void ChordOccupancy::Segments::add(const Vector& start, const Vector& axis) {
-  const auto set = [&](float* coordinates, double value) { coordinates[count] = static_cast<float>(value); };
-  set(x, start.x()), set(y, start.y()), set(z, start.z());
-  set(dx, axis.x()), set(dy, axis.y()), set(dz, axis.z());
-  const double length_square = axis.squaredNorm();
-  set(inverse_square, length_square > 1e-30 ? 1 / length_square : 0);
-  ++count;
-}
-
-void ChordOccupancy::Segments::fill_up() {
-  for (int i = count; i % lanes != 0; ++i) {
-    x[i] = y[i] = z[i] = 1e15F;
-    dx[i] = dy[i] = dz[i] = inverse_square[i] = 0;
+  // Most of the band is known to be well inside from the way that led there; what stops streamlines takes seeds, too.
+  const float depth = depth_inside(stops());
+  for (std::size_t i = 0; i < queue_.size(); ++i) {
+    const auto reached = queue_[i];
+    if (reached.distance + std::abs(tiles_[reached.triangle].radius) <= depth) {
+      reach_neighbours(reached);
+      fill(reached.triangle, stopped_);
+      if (has_seed_sets_) fill(reached.triangle, unseeded_);
+    } else {
+      visit_border(reached, line, first);
+    }
   }
-}
-
-float ChordOccupancy::Segments::distance(float x0, float y0, float z0) {
-  Lanes nearest = Lanes::Constant(1e30F);
-  for (int i = 0; i < count; i += lanes) {
-    Lanes px = x0 - lanes_at(x + i), py = y0 - lanes_at(y + i), pz = z0 - lanes_at(z + i);
-    const auto ax = lanes_at(dx + i), ay = lanes_at(dy + i), az = lanes_at(dz + i);
-    const Lanes along = ((px * ax + py * ay + pz * az) * lanes_at(inverse_square + i)).max(0.F).min(1.F);
-    px -= along * ax;
-    py -= along * ay;
-    pz -= along * az;
-    const Lanes result = px * px + py * py + pz * pz;
-    lanes_at(square + i) = result;
-    nearest = nearest.min(result);
-  }
-  return std::sqrt(nearest.minCoeff());
 }
 
 void ChordOccupancy::fill_block(const Polyline& line, std::size_t first, std::size_t last) {
   auto& segments = block_.segments;
-  segments.clear();
+  segments.count = 0;
   const double reach = greatest_clearance() * (1 + guard) * (1 + distance_slack);
+  block_.least_reach = infinity;
+  block_.greatest_reach = 0;
   for (auto i = first; i < last; ++i) {
     block_.separation[i - first] = separation(line.triangles[i]);
-    block_.reach[i - first] = static_cast<float>(reach * block_.separation[i - first]);
-    segments.add(line.points[i] - origin_, line.points[i + 1] - line.points[i]);
+    const auto segment_reach = static_cast<float>(reach * block_.separation[i - first]);
+    block_.least_reach = std::min(block_.least_reach, segment_reach);
+    block_.greatest_reach = std::max(block_.greatest_reach, segment_reach);
+    segments.add(line.points[i] - origin_, line.points[i + 1] - line.points[i], segment_reach);
   }
-  const auto [least, greatest] = std::minmax_element(block_.reach, block_.reach + segments.count);
-  block_.least_reach = *least;
-  block_.greatest_reach = *greatest;
-  for (int i = segments.count; i % lanes != 0; ++i) block_.reach[i] = 0;
   segments.fill_up();
+  note_who_takes_ends();
   simplify_block(line, first);
+}
+
+/// Where capsules meet, their balls are the same, or one holds the other.
+void ChordOccupancy::note_who_takes_ends() {
+  const int count = block_.segments.count;
+  block_.next_takes.fill(0);
+  block_.previous_takes.fill(0);
+  for (int i = 0; i + 1 < count; ++i) {
+    const int next = i + 1;
+    const auto bit = [](int segment) { return static_cast<std::uint8_t>(1U << segment % Segments::group_size); };
+    if (block_.separation[next] >= block_.separation[i]) block_.next_takes[i / Segments::group_size] |= bit(i);
+    if (block_.separation[i] >= block_.separation[next]) {
+      block_.previous_takes[next / Segments::group_size] |= bit(next);
+    }
+  }
 }
 
 /// Joins consecutive segments of the block at hand that are nearly in line.
 void ChordOccupancy::simplify_block(const Polyline& line, std::size_t first) {
   auto& coarse = block_.coarse;
-  coarse.clear();
-  block_.coarse_error = std::numeric_limits<float>::infinity();
+  coarse.count = 0;
+  block_.coarse_error = infinity;
   if (block_.least_reach != block_.greatest_reach) return;
   // All points between within this of the straight line: then no point of either is farther from the other.
   const auto deviation = [&](std::size_t from, std::size_t to) {
@@ -204,7 +211,7 @@ void ChordOccupancy::simplify_block(const Polyline& line, std::size_t first) {
       if (next > tolerance) break;
       error = std::max(error, next);
     }
-    coarse.add(line.points[from] - origin_, line.points[to] - line.points[from]);
+    coarse.add(line.points[from] - origin_, line.points[to] - line.points[from], block_.least_reach);
     from = to;
   }
   block_.coarse_error = static_cast<float>(error) * (1 + distance_slack) + slack_;
@@ -212,96 +219,86 @@ void ChordOccupancy::simplify_block(const Polyline& line, std::size_t first) {
 }
 
 void ChordOccupancy::measure_distances(const Tile& tile) {
-  block_.nearest = block_.segments.distance(tile.x, tile.y, tile.z);
+  block_.nearest = distance(block_.segments, {tile.x, tile.y, tile.z});
 }
 
-void ChordOccupancy::reach(std::int32_t triangle, float distance) {
+inline void ChordOccupancy::reach(std::int32_t triangle, float distance) {
   auto& tile = tiles_[triangle];
   if (tile.round == round_) return;
   tile.round = round_;
   queue_.push_back({triangle, distance});
   // By the time its turn comes these will be at hand.
-  __builtin_prefetch(&sheet_.corners[triangle]);
-  __builtin_prefetch(&sheet_.crossings[triangle]);
-  for (const auto next : tile.neighbours) {
-    if (next != none) __builtin_prefetch(&tiles_[next]);
-  }
+  for (const auto next : tile.neighbours) __builtin_prefetch(tiles_.data() + next);
 }
 
-void ChordOccupancy::reach_from(const Reached& from, std::int32_t triangle) {
-  const auto &tile = tiles_[triangle], &there = tiles_[from.triangle];
+inline void ChordOccupancy::reach_from(const Tile& from, float distance, std::int32_t triangle) {
+  const auto& tile = tiles_[triangle];
   if (tile.round == round_) return;
-  const float x = tile.x - there.x, y = tile.y - there.y, z = tile.z - there.z;
-  reach(triangle, (from.distance + std::sqrt(x * x + y * y + z * z)) * (1 + distance_slack) + slack_);
+  const float x = tile.x - from.x, y = tile.y - from.y, z = tile.z - from.z;
+  reach(triangle, (distance + std::sqrt(x * x + y * y + z * z)) * (1 + distance_slack) + slack_);
 }
 
-void ChordOccupancy::reach_neighbours(const Reached& from) {
+inline void ChordOccupancy::reach_neighbours(const Reached& from) {
+  const auto& tile = tiles_[from.triangle];
   for (const auto role : {low_high, low_middle, middle_high}) {
-    const auto next = tiles_[from.triangle].neighbours[role];
+    const auto next = tile.neighbours[role];
     if (next != none) {
-      reach_from(from, next);
+      reach_from(tile, from.distance, next);
     } else {  // where the surface was cut at a non-manifold edge, it goes on for distances
       const auto edge = edge_of(mesh_, sheet_.mesh_triangles[from.triangle], sheet_.crossings[from.triangle], role);
-      for (const auto other : mesh_.edge_triangles(edge)) reach_from(from, sheet_.ranks[other]);
+      for (const auto other : mesh_.edge_triangles(edge)) reach_from(tile, from.distance, sheet_.ranks[other]);
     }
   }
 }
 
-void ChordOccupancy::visit(Reached reached, const Polyline& line, std::size_t first) {
-  const auto triangle = reached.triangle;
-  const auto& tile = tiles_[triangle];
+/// Visits a triangle that may not lie wholly within the band.
+void ChordOccupancy::visit_border(Reached reached, const Polyline& line, std::size_t first) {
+  const auto& tile = tiles_[reached.triangle];
   const float radius = std::abs(tile.radius);
   // A jagged border can part triangles that lie side by side: there the search goes on one edge farther.
   const float limit = tile.radius < 0 ? 3 * radius : radius;
-  const Marking stops{clearance_.stop, static_cast<float>(clearance_.stop / greatest_clearance()), stopped_};
-  const Marking seeds{clearance_.seed, static_cast<float>(clearance_.seed / greatest_clearance()), unseeded_};
-  bool is_measured = false;
-  const auto measure = [&] {
-    if (!is_measured) measure_distances(tile);
-    is_measured = true;
-  };
-  // Most of the band is known to be well inside from the way that led here.
-  if (!lies_in_capsule(reached, stops)) {
-    const float coarse = block_.coarse.distance(tile.x, tile.y, tile.z), error = block_.coarse_error;
-    if (coarse - error > limit + block_.greatest_reach) return;
-    if (coarse + error > limit + block_.least_reach) {
-      measure();
-      if (nearest_capsule(1) > limit) return;
-    }
-    reached.distance = std::min(reached.distance, coarse + error);
+  __builtin_prefetch(&sheet_.corners[reached.triangle]);
+  __builtin_prefetch(&sheet_.crossings[reached.triangle]);
+  block_.nearest = unknown;
+  const float coarse = distance(block_.coarse, {tile.x, tile.y, tile.z}), error = block_.coarse_error;
+  if (coarse - error > limit + block_.greatest_reach) return;
+  if (coarse + error > limit + block_.least_reach) {
+    measure_distances(tile);
+    if (nearest_capsule(1) > limit) return;
   }
+  for (const auto v : sheet_.corners[reached.triangle]) __builtin_prefetch(&sheet_.vertices[v]);
+  reached.distance = std::min(reached.distance, coarse + error);
   reach_neighbours(reached);
-  const auto mark_in = [&](const Marking& marking) {
-    if (marking.sets.is_full(triangle)) return;
-    if (lies_in_capsule(reached, marking)) {
-      fill(triangle, marking.sets);
-    } else {
-      measure();
-      mark(triangle, line, first, marking);
-    }
-  };
-  mark_in(stops);
-  if (has_seed_sets_) mark_in(seeds);
+  mark_in(reached, stops(), line, first);
+  if (has_seed_sets_) mark_in(reached, seeds(), line, first);
 }
 
-/// Does a disc around the triangle lie in a capsule, whose axis is no farther than we know?
-bool ChordOccupancy::lies_in_capsule(const Reached& reached, const Marking& marking) const {
-  return reached.distance + std::abs(tiles_[reached.triangle].radius) <=
-         (marking.share - 3 * distance_slack) * block_.least_reach;
+void ChordOccupancy::mark_in(const Reached& reached, const Marking& marking, const Polyline& line, std::size_t first) {
+  if (marking.sets.is_full(reached.triangle)) return;
+  const auto& tile = tiles_[reached.triangle];
+  if (reached.distance + std::abs(tile.radius) <= depth_inside(marking)) {
+    fill(reached.triangle, marking.sets);
+  } else {
+    if (block_.nearest == unknown) measure_distances(tile);
+    mark(reached.triangle, line, first, marking);
+  }
 }
 
-void ChordOccupancy::fill(std::int32_t triangle, IntervalSets& sets) {
+/// A disc lies in one of the block's capsules if its centre is so far from an axis, less its radius.
+float ChordOccupancy::depth_inside(const Marking& marking) const {
+  return (marking.share - 3 * distance_slack) * block_.least_reach;
+}
+
+inline void ChordOccupancy::fill(std::int32_t triangle, IntervalSets& sets) {
+  if (sets.is_full(triangle)) return;
   sets.fill(triangle);
   if (&sets == &unseeded()) changed_.push_back(triangle);
 }
 
+/// From the point at hand to the nearest capsule, whose radii are this share of `reach`; negative inside.
 float ChordOccupancy::nearest_capsule(float share) const {
-  if (block_.least_reach == block_.greatest_reach) return block_.nearest - share * block_.greatest_reach;
-  Lanes nearest = Lanes::Constant(1e30F);
-  for (int i = 0; i < block_.segments.count; i += lanes) {
-    nearest = nearest.min(lanes_at(block_.segments.square + i).sqrt() - share * lanes_at(block_.reach + i));
-  }
-  return nearest.minCoeff();
+  const bool varies = block_.least_reach != block_.greatest_reach;
+  return varies ? distance_to_capsules(block_.segments, share) : block_.nearest - share * block_.greatest_reach;
 }
 
 /// Marks the chords within a clearance of the block's segments.
@@ -318,81 +315,104 @@ void ChordOccupancy::mark(std::int32_t triangle, const Polyline& line, std::size
   changed_.push_back(triangle);
 }
 
-/// Adds the chords that one capsule takes.
-void ChordOccupancy::mark_chords(std::int32_t triangle, const ChordFrame& frame, const GuardedCapsule& guarded,
-                                 IntervalSets& sets) {
-  const auto& [capsule, margin] = guarded;
-  const auto reach = frame.reach(capsule);
-  if (!reach) return;
-  const Interval within{std::max(0.0, reach->low), std::min(1.0, reach->high)};
-  if (within.low > within.high || sets.contains(triangle, within)) return;
-  const auto view = frame.look(capsule);
-  if (&sets == &unseeded_) {
-    for (const auto& chords : frame.core(capsule, view)) {
-      if (chords) sets.add(triangle, *chords);
+/// Chooses the segments whose capsules may take chords of a triangle, in their order; returns how many.
+int ChordOccupancy::choose_capsules(std::int32_t triangle, const Marking& marking) {
+  const auto corner = [&](const Vector& place) { return float_point(place - origin_); };
+  const TriangleQuestion question{
+      {corner(sheet_.low(triangle)), corner(sheet_.middle(triangle)), corner(sheet_.high(triangle))},
+      std::abs(tiles_[triangle].radius),
+      marking.share,
+      2 * slack_};
+  int chosen = 0;
+  unsigned last_was_left = 0;
+  for (int group = 0; group < block_.segments.count; group += Segments::group_size) {
+    const auto [are_near, lie_before, lie_beyond] = segments_near(block_.segments, group, question);
+    // What only the ball at an end can meet is left to the next capsule, or was taken by the one before, unless that
+    // left it.
+    const unsigned left = are_near & lie_beyond & block_.next_takes[group / Segments::group_size];
+    const unsigned taken =
+        lie_before & block_.previous_takes[group / Segments::group_size] & ~(left << 1 | last_was_left);
+    for (unsigned rest = are_near & ~left & ~taken; rest != 0; rest &= rest - 1) {
+      block_.chosen[chosen++] = group + std::countr_zero(rest);
     }
-  } else if (const auto chords = frame.shadow(capsule, view)) {
-    const Interval taken{chords->low - margin, chords->high + margin};
-    sets.add(triangle, taken);
-    if (has_seed_sets_) unseeded_.add(triangle, taken);
+    last_was_left = left >> (Segments::group_size - 1) & 1;
   }
+  return chosen;
 }
 
 void ChordOccupancy::mark_exactly(std::int32_t triangle, const Polyline& line, std::size_t first,
                                   const Marking& marking) {
-  auto& sets = marking.sets;
+  const int count = choose_capsules(triangle, marking);
+  if (count == 0) return;
   const ChordFrame frame(sheet_.low(triangle), sheet_.middle(triangle), sheet_.high(triangle),
                          sheet_.crossings[triangle].split);
-  const float radius = std::abs(tiles_[triangle].radius);
-  // Consecutive capsules share a point.
-  int last_end = -1;
-  Vector last_point;
-  /// Adds a capsule's chords, but not those that the one before or behind it takes anyway; is it the one behind?
-  const auto add = [&](int i, bool is_left_to_next) {
-    const double* separations = block_.separation + i;
-    const Vector start = last_end == i ? last_point : frame.flat(line.points[first + i]);
-    last_point = frame.flat(line.points[first + i + 1]);
-    last_end = i + 1;
-    const Capsule capsule{start, last_point, marking.clearance * *separations * (1 + guard)};
-    const auto [is_before_start, is_beyond_end] = frame.range_along(capsule);
-    if (is_beyond_end && i + 1 < block_.segments.count && separations[1] >= separations[0]) return true;
-    if (is_before_start && i > 0 && !is_left_to_next && separations[-1] >= separations[0]) return false;
-    mark_chords(triangle, frame, {capsule, guard * *separations / frame.width()}, sets);
-    return false;
-  };
-  bool is_left_to_next = false;
-  const float greatest_limit = radius + marking.share * block_.greatest_reach;
-  for (int group = 0; group < block_.segments.count; group += lanes) {
-    if (lanes_at(block_.segments.square + group).minCoeff() > greatest_limit * greatest_limit) continue;
-    for (int i = group; i < std::min(group + lanes, block_.segments.count) && !sets.is_full(triangle); ++i) {
-      const float limit = radius + marking.share * block_.reach[i];
-      if (block_.segments.square[i] <= limit * limit) is_left_to_next = add(i, is_left_to_next);
+  joined_.reset();
+  for (int i = 0; i < count; i += capsule_lanes) {
+    const std::span chosen(&block_.chosen[i], static_cast<std::size_t>(std::min(capsule_lanes, count - i)));
+    const auto capsules = capsules_around(chosen, line, first, marking.clearance);
+    if (&marking.sets == &unseeded_) {
+      for (const auto& chords : chord_cores(frame, capsules)) join(triangle, chords, chosen, 0, marking.sets);
+    } else {
+      join(triangle, chord_shadows(frame, capsules), chosen, guard / frame.width, marking.sets);
+    }
+  }
+  if (joined_) add_chords(triangle, *joined_, marking.sets);
+}
+
+/// Fewer than a full set of lanes are filled up with the last one.
+Capsules ChordOccupancy::capsules_around(std::span<const int> chosen, const Polyline& line, std::size_t first,
+                                         double clearance) const {
+  Capsules capsules;
+  for (std::size_t lane = 0; lane < capsule_lanes; ++lane) {
+    const auto segment = static_cast<std::size_t>(chosen[std::min(lane, chosen.size() - 1)]);
+    capsules.start[lane] = &line.points[first + segment];
+    capsules.end[lane] = &line.points[first + segment + 1];
+    capsules.radius[lane] = clearance * block_.separation[segment] * (1 + guard);
+  }
+  return capsules;
+}
+
+/// Joins chords to those at hand while they overlap, as most do; `margin` is in separation distances.
+void ChordOccupancy::join(std::int32_t triangle, const ChordIntervals& chords, std::span<const int> chosen,
+                          double margin, IntervalSets& sets) {
+  for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
+    if (!(chords.low[lane] <= chords.high[lane])) continue;
+    const double rounding = margin * block_.separation[chosen[lane]];
+    const Interval more{chords.low[lane] - rounding, chords.high[lane] + rounding};
+    if (joined_ && more.low <= joined_->high && more.high >= joined_->low) {
+      joined_ = {std::min(joined_->low, more.low), std::max(joined_->high, more.high)};
+    } else {
+      if (joined_) add_chords(triangle, *joined_, sets);
+      joined_ = more;
     }
   }
 }
 
-double ChordOccupancy::free_share(std::int32_t triangle) const {
+void ChordOccupancy::add_chords(std::int32_t triangle, const Interval& chords, IntervalSets& sets) {
+  sets.add(triangle, chords);
+  if (has_seed_sets_ && &sets == &stopped_) unseeded_.add(triangle, chords);
+}
+
+double ChordOccupancy::free_share(std::int32_t triangle, const IntervalSets& sets) const {
+  if (sets.is_full(triangle)) return 0;
+  if (sets.is_empty(triangle)) return 1;
   const auto& crossings = sheet_.crossings[triangle];
-  if (unseeded().is_full(triangle)) return 0;
   double share = 0;
-  for (const auto& gap : unseeded().gaps(triangle)) {
+  for (const auto& gap : sets.gaps(triangle)) {
     share += area_share(crossings, gap.high) - area_share(crossings, gap.low);
   }
   return share;
 }
 
 double ChordOccupancy::coverage() const {
-  double free = 0, all = 0;
+  double free = 0, taken = 0;
   for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
-    if (!sheet_.has_direction(t)) continue;
-    const double area = mesh_.triangle_areas()[sheet_.mesh_triangles[t]];
-    all += area;
-    if (stopped_.is_full(t)) continue;
-    for (const auto& gap : stopped_.gaps(t)) {
-      free += area * (area_share(sheet_.crossings[t], gap.high) - area_share(sheet_.crossings[t], gap.low));
-    }
+    if (!tracer_.has_direction(t)) continue;
+    const double share = free_share(sheet_.ranks[t], stopped_), area = mesh_.triangle_areas()[t];
+    free += share * area;
+    taken += (1 - share) * area;
   }
-  return 1 - free / all;
+  return taken / (free + taken);
 }
 
 }  // namespace pectinate::detail

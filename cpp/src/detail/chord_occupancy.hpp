@@ -4,12 +4,15 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "detail/capsule.hpp"
 #include "detail/chord_shadow.hpp"
 #include "detail/interval_sets.hpp"
 #include "detail/large_array.hpp"
+#include "detail/segments.hpp"
 #include "detail/sheet.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/occupancy.hpp"
@@ -53,7 +56,7 @@ class ChordOccupancy {
   const std::vector<std::int32_t>& changed() const { return changed_; }
 
   /// The share of the area of all chords in a triangle that is still free for seeds.
-  double free_share(std::int32_t triangle) const;
+  double free_share(std::int32_t triangle) const { return free_share(triangle, unseeded()); }
   /// The share of the surface, of its triangles with a direction, whose chords are taken.
   double coverage() const;
 
@@ -68,34 +71,19 @@ class ChordOccupancy {
     std::array<std::int32_t, 3> neighbours;  ///< by Role
     std::uint32_t round;                     ///< in which it was reached last
   };
-  static constexpr int lanes = 8;
-  static constexpr int most_segments = 16 * lanes;
-
-  /// Segments laid out for distances from one point to all of them.
-  struct Segments {
-    alignas(64) float x[most_segments], y[most_segments], z[most_segments];
-    float dx[most_segments], dy[most_segments], dz[most_segments], inverse_square[most_segments];
-    float square[most_segments];  ///< of the distance from the point at hand
-    int count = 0;
-
-    void clear() { count = 0; }
-    void add(const Vector& start, const Vector& axis);
-    /// Whole groups of lanes: what is too many is far away.
-    void fill_up();
-    /// From a point, to the nearest; sets `square`.
-    float distance(float x0, float y0, float z0);
-  };
 
   /// A stretch of a streamline.
   struct Block {
     Segments segments;
-    double separation[most_segments];
-    float reach[most_segments];  ///< greatest radius of the segment's capsule
+    std::array<double, Segments::most> separation;
     float least_reach = 0, greatest_reach = 0;
     float nearest = 0;  ///< distance from the point at hand to the nearest segment
     /// Fewer and longer segments that are as near to any point as the true ones, but for the error.
     Segments coarse;
     float coarse_error = 0;
+    /// By group and bit: a segment's ball at its end lies in the next capsule, that at its start in the one before.
+    std::array<std::uint8_t, Segments::most / Segments::group_size> next_takes, previous_takes;
+    std::array<int, Segments::most> chosen;  ///< segments whose capsules may take chords of the triangle at hand
   };
 
   /// One of the two kinds of marks: capsules of radius `clearance`, which is this share of `reach`, marked in `sets`.
@@ -105,9 +93,13 @@ class ChordOccupancy {
     IntervalSets& sets;
   };
 
+  double free_share(std::int32_t triangle, const IntervalSets& sets) const;
+  void make_tiles();
+  bool lies_on_border(std::int32_t triangle, Role side) const;
   void keep_out_of(const SingularRegion& region);
   void add_block(const Polyline& line, std::size_t first, std::size_t last);
   void fill_block(const Polyline& line, std::size_t first, std::size_t last);
+  void note_who_takes_ends();
   void simplify_block(const Polyline& line, std::size_t first);
   void measure_distances(const Tile& tile);
   /// A triangle that the search has come to, whose centroid is at most so far from the block.
@@ -117,20 +109,24 @@ class ChordOccupancy {
   };
 
   void reach(std::int32_t triangle, float distance);
-  void reach_from(const Reached& from, std::int32_t triangle);
+  void reach_from(const Tile& from, float distance, std::int32_t triangle);
   void reach_neighbours(const Reached& from);
-  void visit(Reached reached, const Polyline& line, std::size_t first);
+  void visit_border(Reached reached, const Polyline& line, std::size_t first);
+  void mark_in(const Reached& reached, const Marking& marking, const Polyline& line, std::size_t first);
+  Marking stops() { return {clearance_.stop, static_cast<float>(clearance_.stop / greatest_clearance()), stopped_}; }
+  Marking seeds() { return {clearance_.seed, static_cast<float>(clearance_.seed / greatest_clearance()), unseeded_}; }
   /// From the point at hand to the nearest capsule, whose radii are this share of `reach`; negative inside.
   float nearest_capsule(float share) const;
   void mark(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking);
-  bool lies_in_capsule(const Reached& reached, const Marking& marking) const;
+  float depth_inside(const Marking& marking) const;
   void fill(std::int32_t triangle, IntervalSets& sets);
-  struct GuardedCapsule {
-    Capsule capsule;
-    double margin;  ///< of rounding, in chord coordinates
-  };
-  void mark_chords(std::int32_t triangle, const ChordFrame& frame, const GuardedCapsule& guarded, IntervalSets& sets);
+  int choose_capsules(std::int32_t triangle, const Marking& marking);
+  void add_chords(std::int32_t triangle, const Interval& chords, IntervalSets& sets);
   void mark_exactly(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking);
+  Capsules capsules_around(std::span<const int> chosen, const Polyline& line, std::size_t first,
+                           double clearance) const;
+  void join(std::int32_t triangle, const ChordIntervals& chords, std::span<const int> chosen, double margin,
+            IntervalSets& sets);
   double greatest_clearance() const { return std::max(clearance_.stop, clearance_.seed); }
   double separation(std::int32_t triangle) const {
     return tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
@@ -149,6 +145,7 @@ class ChordOccupancy {
   std::vector<Reached> queue_;
   std::vector<std::int32_t> changed_;
   Block block_;
+  std::optional<Interval> joined_;  ///< chords of the triangle at hand, not yet added
 };
 
 }  // namespace pectinate::detail

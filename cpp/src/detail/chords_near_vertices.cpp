@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "detail/capsule.hpp"
 #include "detail/chord_shadow.hpp"
 #include "detail/vec.hpp"
 
@@ -47,13 +48,14 @@ class VertexSearch {
 
   std::optional<Interval> chords_near(std::int32_t rank, const Vector& vertex) const {
     const ChordFrame frame(sheet_.low(rank), sheet_.middle(rank), sheet_.high(rank), sheet_.crossings[rank].split);
-    const Vector centre = frame.flat(vertex);
-    const Capsule ball{centre, centre, radius_ * (1 + guard)};
-    if (!frame.reach(ball)) return std::nullopt;
-    const auto chords = frame.shadow(ball, frame.look(ball));
-    if (!chords) return std::nullopt;
-    const double margin = guard * radius_ / frame.width();
-    return Interval{chords->low - margin, chords->high + margin};
+    Capsules balls;
+    balls.start.fill(&vertex);
+    balls.end.fill(&vertex);
+    balls.radius.fill(radius_ * (1 + guard));
+    const auto chords = chord_shadows(frame, balls);
+    if (!(chords.low[0] <= chords.high[0])) return std::nullopt;
+    const double margin = guard * radius_ / frame.width;
+    return Interval{chords.low[0] - margin, chords.high[0] + margin};
   }
 
   /// Of a triangle without chords.

@@ -6,11 +6,16 @@
 namespace pectinate::detail {
 
 std::vector<Interval> IntervalSets::intervals(std::int32_t item) const {
-  if (is_full(item)) return {{0, 1}};
   std::vector<Interval> result;
+  get_intervals(item, result);
+  return result;
+}
+
+void IntervalSets::get_intervals(std::int32_t item, std::vector<Interval>& result) const {
+  result.clear();
+  if (is_full(item)) result.push_back({0, 1});
   for (auto node = items_[item].first; node >= 0; node = nodes_[node].next) result.push_back(nodes_[node].interval);
   std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.low < b.low; });
-  return result;
 }
 
 std::vector<Interval> IntervalSets::gaps(std::int32_t item) const {

@@ -41,6 +41,8 @@ class IntervalSets {
 
   /// The intervals in ascending order.
   std::vector<Interval> intervals(std::int32_t item) const;
+  /// The same, in memory that is there already.
+  void get_intervals(std::int32_t item, std::vector<Interval>& result) const;
   /// The open gaps between them, in ascending order.
   std::vector<Interval> gaps(std::int32_t item) const;
 

@@ -76,6 +76,12 @@ class LongestFirst {
       const double position = edge_position(crossings_[triangle], exit, coordinate);
       triangle = way_out.triangle;
       const auto& crossings = crossings_[triangle];
+      if (way_out.role == low_high) {
+        prefetch(crossings.neighbours[low_middle]);
+        prefetch(crossings.neighbours[middle_high]);
+      } else {
+        prefetch(crossings.neighbours[low_high]);
+      }
       coordinate = chord_coordinate(crossings, way_out.role, position);
       if (mind_others && occupancy_.stopped().contains(triangle, coordinate)) {
         return occupancy_.stop_reason(triangle, coordinate);
@@ -87,6 +93,11 @@ class LongestFirst {
       chords.push_back(make_chord(triangle, coordinate, exit == low_high));
     }
     return StopReason::max_steps;
+  }
+
+  void prefetch(std::int32_t t) const {
+    __builtin_prefetch(crossings_.data() + t);
+    visited_.prefetch(t);
   }
 
   Chord make_chord(std::int32_t triangle, double coordinate, bool leaves_through_low_high) const {
@@ -146,9 +157,10 @@ class LongestFirst {
   /// Trajectories so close that the longest streamlines are never far from one: each triangle is crossed by one, or a
   /// few triangles away from one. False if it was stopped.
   bool fill_pool(const std::function<bool()>& go_on) {
-    std::vector<bool> served(crossings_.size(), false);
+    TriangleMarks served(crossings_.size(), 0), has_been_crossed(served);
     std::vector<std::int32_t> seeds;  // the last one is the next
     const double sparse = sparse_separation * mean_edge_length();
+    const bool is_local = occupancy_.has_seed_sets();
     for (const auto first : sheet_.ranks) {  // in the mesh's order: the sheet's depends on the axes
       for (seeds.push_back(first); !seeds.empty();) {
         const auto t = seeds.back();
@@ -157,8 +169,12 @@ class LongestFirst {
         if (!go_on()) return false;
         const auto stretch = add_trajectory(t, 0.5, false, 1).stretch;
         std::vector<std::int32_t> crossed;
-        for (const auto& chord : candidates_.chords_of(stretch)) crossed.push_back(chord.triangle());
-        if (occupancy_.has_seed_sets()) {
+        for (const auto& chord : candidates_.chords_of(stretch)) {
+          if (!is_local && has_been_crossed[chord.triangle()]) continue;  // all around it is served
+          has_been_crossed[chord.triangle()] = 1;
+          crossed.push_back(chord.triangle());
+        }
+        if (is_local) {
           const auto beside = mark_rings(crossings_, std::move(crossed), 0, served);
           seeds.insert(seeds.end(), beside.begin(), beside.end());  // on from there: its memory is at hand
         } else {
@@ -184,11 +200,12 @@ class LongestFirst {
   void push_hugging() {
     ++round_;
     for (const auto t : occupancy_.changed()) {
-      make_room();  // what goes for want of it comes back when gaps are filled
       if (hugged_[t] == round_ || occupancy_.unseeded().is_full(t)) continue;
+      make_room();  // what goes for want of it comes back when gaps are filled
       hugged_[t] = round_;
       const double gap = hugging_gap * separation(t) / crossings_[t].width;
-      for (const auto& [low, high] : occupancy_.unseeded().intervals(t)) {
+      occupancy_.unseeded().get_intervals(t, intervals_);
+      for (const auto& [low, high] : intervals_) {
         for (const double coordinate : {low - gap, high + gap}) {
           if (!(coordinate > least_position && coordinate < 1 - least_position)) continue;
           if (occupancy_.unseeded().contains(t, coordinate)) continue;
@@ -374,6 +391,7 @@ class LongestFirst {
   VisitedChords visited_;
   Chords scratch_;
   Polyline polyline_;                  // of the stretch at hand
+  std::vector<Interval> intervals_;    // of the triangle at hand
   std::vector<std::uint32_t> hugged_;  // per triangle: the last streamline beside which a candidate crosses it
   std::uint32_t round_ = 0;
 };

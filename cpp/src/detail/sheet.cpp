@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -24,10 +25,14 @@ struct Sides {
   std::array<double, 3> across, along;
 };
 
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr std::array<double, 3> no_angles = {not_a_number, not_a_number, not_a_number};
+
 /// The same, kept until the neighbours are known as well.
 struct SideAngles {
   /// The angle from a side's edge to the orientation, taken as running into the triangle, lies in (0, pi): `sine` and
   /// `cosine` are its, times the side's length.
+  /// Not numbers without an orientation.
   std::array<double, 3> sine, cosine;  ///< by Role
 };
 
@@ -124,8 +129,9 @@ class SheetMaker {
   void measure(std::int32_t t, std::int32_t i) {
     sheet_.mesh_triangles[i] = t;
     const auto& corners = mesh_.triangles()[t];
-    TriangleCrossings crossings{};
-    Sides sides{};
+    auto& crossings = sheet_.crossings[i];  // in place: to copy what was just written piece by piece makes it wait
+    crossings = {};
+    Sides sides{no_angles, no_angles};
     if (field_.has_direction(t)) {
       const auto at = [&](int k) { return vector(mesh_.vertices()[corners[k]]); };
       sides = measure_chords(
@@ -148,29 +154,34 @@ class SheetMaker {
       const auto side_there = static_cast<Role>(std::max<std::int8_t>(across.side, 0));
       crossings.codes[role] = TriangleCrossings::make_code(side_there, runs_along != (role == low_high), 0);
     }
-    sheet_.crossings[i] = crossings;
   }
 
+  /// Notes what lies beyond a side.
   void set_exit(std::int32_t i, Role role) {
     auto& crossings = sheet_.crossings[i];
     const auto j = crossings.neighbours[role];
-    const int side_there = crossings.codes[role] & 3;
-    const Role role_there = j < 0 ? low_high : role_of(side_there, sheet_.crossings[j].middle);
-    const int stop = stop_between(i, role, j, role_there);
-    crossings.codes[role] = TriangleCrossings::make_code(role_there, crossings.is_reversed(role), stop);
-  }
-
-  /// Why streamlines stop between two sides (criteria 2 and 4, or where the field ends): the reason + 1, or 0.
-  int stop_between(std::int32_t i, Role role, std::int32_t j, Role role_there) const {
-    const auto stop = [](StopReason reason) { return static_cast<int>(reason) + 1; };
-    if (j < 0) return stop(StopReason::boundary);
-    if (!sheet_.has_direction(i) || !sheet_.has_direction(j)) return stop(StopReason::no_field);
-    const double sine = angles_[i].sine[role], cosine = angles_[i].cosine[role];
+    const bool is_reversed = crossings.is_reversed(role);
+    if (j < 0) {
+      crossings.codes[role] = TriangleCrossings::make_code(low_high, is_reversed, stop(StopReason::boundary));
+      return;
+    }
+    const Role role_there = role_of(crossings.codes[role] & 3, sheet_.crossings[j].middle);
+    const auto &here = angles_[i], &there = angles_[j];
+    const double sine = here.sine[role], cosine = here.cosine[role];
     // Unfolded about the edge, a straight way leaves at the angle here and goes on at pi minus it: the turn is the
     // difference of that and the angle there.
-    const double turn_cosine = sine * angles_[j].sine[role_there] - cosine * angles_[j].cosine[role_there];
-    return turn_cosine < least_turn_cosine_ * (sine * sine + cosine * cosine) ? stop(StopReason::abrupt_turn) : 0;
+    const double turn_cosine = sine * there.sine[role_there] - cosine * there.cosine[role_there];
+    const bool goes_on = turn_cosine >= least_turn_cosine_ * (sine * sine + cosine * cosine);
+    crossings.codes[role] = TriangleCrossings::make_code(role_there, is_reversed, goes_on ? 0 : why_stop(i, j));
   }
+
+  /// Why streamlines stop between two triangles (criterion 4, or where the field ends).
+  int why_stop(std::int32_t i, std::int32_t j) const {
+    const bool has_field = sheet_.has_direction(i) && sheet_.has_direction(j);
+    return stop(has_field ? StopReason::abrupt_turn : StopReason::no_field);
+  }
+
+  static int stop(StopReason reason) { return static_cast<int>(reason) + 1; }
 
   const SurfaceMesh& mesh_;
   const OrientationField& field_;

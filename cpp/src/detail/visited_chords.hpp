@@ -29,6 +29,8 @@ class VisitedChords {
     return is_near;
   }
 
+  void prefetch(std::int32_t t) const { __builtin_prefetch(visits_.data() + t, 1); }
+
  private:
   struct Visit {
     float chord;

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+
+#include "detail/chord_shadow.hpp"
+#include "detail/random.hpp"
+#include "detail/segments.hpp"
+
+namespace pectinate::detail {
+
+// As the engine compiles them.
+namespace shadow_variants {
+#define PECTINATE_KERNEL "detail/chord_shadow_lanes.inl"
+#include "detail/kernel_variants.inl"
+}  // namespace shadow_variants
+namespace segment_variants {
+#define PECTINATE_KERNEL "detail/segments_lanes.inl"
+#include "detail/kernel_variants.inl"
+}  // namespace segment_variants
+
+#ifdef PECTINATE_HAS_VARIANTS
+namespace {
+
+Vector draw_vector(Random& random) {
+  const double x = random.unit(), y = random.unit(), z = random.unit();
+  return {2 * x - 1, 2 * y - 1, 2 * z - 1};
+}
+
+template <class Value>
+bool same_bytes(const Value& a, const Value& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+bool same_bits(const SegmentsNear& a, const SegmentsNear& b) {
+  return a.are_near == b.are_near && a.lie_before == b.lie_before && a.lie_beyond == b.lie_beyond;
+}
+
+}  // namespace
+
+TEST_CASE("kernels: the same bytes on any processor, for shadows and cores") {
+  if (!__builtin_cpu_supports("avx2")) return;
+  Random random(11);
+  int some = 0;
+  for (int round = 0; round < 20000; ++round) {
+    const ChordFrame frame(draw_vector(random), draw_vector(random), draw_vector(random), 0.02 + 0.96 * random.unit());
+    std::array<Vector, capsule_lanes + 1> points;
+    for (auto& point : points) point = draw_vector(random);
+    Capsules capsules;
+    for (int lane = 0; lane < capsule_lanes; ++lane) {
+      capsules.start[lane] = &points[lane];
+      capsules.end[lane] = &points[round % 7 == 0 ? lane : lane + 1];
+      capsules.radius[lane] = random.unit();
+    }
+    const auto shadows = shadow_variants::any_processor::chord_shadows(frame, capsules);
+    CHECK(same_bytes(shadows, shadow_variants::with_avx2::chord_shadows(frame, capsules)));
+    const auto cores = shadow_variants::any_processor::chord_cores(frame, capsules);
+    CHECK(same_bytes(cores, shadow_variants::with_avx2::chord_cores(frame, capsules)));
+    for (int lane = 0; lane < capsule_lanes; ++lane) some += shadows.low[lane] <= shadows.high[lane];
+  }
+  CHECK(some > 20000);
+}
+
+TEST_CASE("kernels: the same bytes on any processor, for distances and choices") {
+  if (!__builtin_cpu_supports("avx2")) return;
+  Random random(12);
+  unsigned near = 0, before = 0, beyond = 0;
+  for (int round = 0; round < 5000; ++round) {
+    Segments segments{};
+    const auto count = static_cast<int>(1 + random.below(Segments::most));
+    for (int i = 0; i < count; ++i) {
+      segments.add(draw_vector(random), 0.3 * draw_vector(random), static_cast<float>(random.unit()));
+    }
+    segments.fill_up();
+    auto other = segments;
+    const auto point = float_point(draw_vector(random));
+    CHECK(segment_variants::any_processor::distance(segments, point) ==
+          segment_variants::with_avx2::distance(other, point));
+    CHECK(same_bytes(segments.square, other.square));
+    const auto corner = [&] { return float_point(0.2 * draw_vector(random)); };
+    const TriangleQuestion question{{corner(), corner(), corner()}, 0.1F, 0.7F, 1e-6F};
+    for (int group = 0; group < count; group += Segments::group_size) {
+      const auto found = segment_variants::any_processor::segments_near(segments, group, question);
+      CHECK(same_bits(found, segment_variants::with_avx2::segments_near(segments, group, question)));
+      near |= found.are_near;
+      before |= found.lie_before;
+      beyond |= found.lie_beyond;
+    }
+  }
+  CHECK((near == 255 && before == 255 && beyond == 255));
+}
+#endif
+
+}  // namespace pectinate::detail
