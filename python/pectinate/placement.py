@@ -94,7 +94,8 @@ def place_streamlines(
         c_seed of method "distance", at least 1.
     seed_clearance : float
         In [1, 2]: a streamline is placed only where some point of it is this many d_sep from the others. Above 1 (1.16
-        is good) they are fewer and longer, still d_sep apart, and leave small gaps.
+        is good) they are fewer and longer, still d_sep apart, and leave small gaps. Those of method "longest" that are
+        at least 9 d_sep long need it not, unless `test_distance` is below 1.
     test_distance : float
         In (0, 1]: streamlines run on until they are this many d_sep from others. Below 1 they are longer, but only
         this far apart.

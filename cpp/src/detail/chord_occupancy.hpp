@@ -42,6 +42,7 @@ class ChordOccupancy {
   const IntervalSets& stopped() const { return stopped_; }
   const IntervalSets& unseeded() const { return has_seed_sets_ ? unseeded_ : stopped_; }
   bool has_seed_sets() const { return has_seed_sets_; }
+  const Clearance& clearance() const { return clearance_; }
   /// Why no streamline may take a chord.
   StopReason stop_reason(std::int32_t triangle, double chord) const {
     return has_singular_ && singular_.contains(triangle, chord) ? StopReason::singularity : StopReason::near_other;

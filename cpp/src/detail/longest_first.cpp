@@ -30,6 +30,9 @@ constexpr double hugging_gap = 1e-6;
 /// need more room to start than to go on, no triangle is left out.
 constexpr int usual_rings = 2, rings_of_dense_pool = 1;
 constexpr double sparse_separation = 6;
+/// Streamlines this long, in separation distances, need no more room to start than to go on: what the room is asked for
+/// is to keep short ones out. On smooth fields much of what they would leave uncovered are long strips.
+constexpr double long_length = 9;
 /// Narrower gaps between occupied chords hold no streamline.
 constexpr double least_gap = 4 * least_position;
 
@@ -279,7 +282,7 @@ class LongestFirst {
         can_start = can_start || !occupancy_.has_seed_sets() || !is_unseeded(chords_[run.last]);
       }
       i = run.last;
-      if (!can_start) continue;
+      if (!can_start && !is_long(run_length, run)) continue;
       if (best && run_length <= best->length) {
         candidates_.push(run, run_length, piece.trajectory, piece.is_self_free);
       } else {
@@ -290,6 +293,10 @@ class LongestFirst {
     return best;
   }
 
+  /// Does it keep d_sep, and needs no more room to start?
+  bool is_long(double length, const Stretch& stretch) const {
+    return occupancy_.clearance().stop >= 1 && length >= long_length * separation(chords_[stretch.first].triangle());
+  }
   bool is_stopped(const Chord& chord) const {
     return occupancy_.stopped().contains(chord.triangle(), chord.coordinate);
   }
@@ -324,7 +331,8 @@ class LongestFirst {
   void place_closed(const Piece& piece) {
     const auto chords = candidates_.chords_of(piece.stretch);
     if (std::ranges::any_of(chords, [&](const Chord& chord) { return is_stopped(chord); })) return;
-    if (std::ranges::all_of(chords, [&](const Chord& chord) { return is_unseeded(chord); })) return;
+    const bool can_start = !std::ranges::all_of(chords, [&](const Chord& chord) { return is_unseeded(chord); });
+    if (!can_start && !is_long(candidates_.length(piece.stretch), piece.stretch)) return;
     make_polyline(piece.stretch);
     place_polyline(piece.stretch, piece.trajectory);
   }

@@ -130,7 +130,7 @@ def _add_placement(parser: argparse.ArgumentParser) -> None:
         "seed_clearance",
         float,
         "FACTOR",
-        "place only where some point is this many separations from all others",
+        "place short streamlines only where a point of them is this many separations from all others",
     )
     add("--test-distance", "test_distance", float, "FACTOR", "run on until this many separations from others")
     add("--minimum-length", "minimum_length", float, "MM", "shorter streamlines are not placed")
