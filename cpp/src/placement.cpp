@@ -13,6 +13,7 @@
 #include "detail/number_text.hpp"
 #include "detail/random.hpp"
 #include "detail/seed_ring.hpp"
+#include "detail/sheet.hpp"
 #include "detail/thread_pool.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/errors.hpp"
@@ -85,6 +86,9 @@ SingularRegion singular_region(const SurfaceMesh& mesh, const OrientationField& 
   }
   return region;
 }
+
+/// Points a triangle for which room is made beforehand.
+constexpr double most_reserved = 16;
 
 /// To look at the clock is not free.
 constexpr int questions_per_look = 8;
@@ -261,6 +265,22 @@ void append(const detail::PlacedLine& line, Placement& placement) {
   placement.seed_points.push_back(first + std::ssize(line.points) / 2);
 }
 
+/// Makes room for as many points as there can be: streamlines d_sep apart cross a triangle so wide across the field
+/// width / d_sep times. Memory that is not written to costs nothing; to move what is full to twice as much costs three
+/// times the result.
+void reserve_points(const StreamlineTracer& tracer, Placement& placement) {
+  const auto& sheet = tracer.sheet();
+  double count = 0;
+  for (std::int32_t t = 0; t < sheet.triangle_count(); ++t) {
+    count += sheet.crossings[t].width / tracer.separation_distance(sheet.mesh_triangles[t]);
+  }
+  const auto most = static_cast<std::size_t>(std::min(count, most_reserved * sheet.triangle_count()));
+  placement.points.reserve(most);
+  placement.barycentric.reserve(most);
+  placement.point_triangles.reserve(most);
+  placement.segment_triangles.reserve(most);
+}
+
 double directed_area(const SurfaceMesh& mesh, const OrientationField& field) {
   double area = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -339,6 +359,7 @@ Placement place_streamlines(const SurfaceMesh& mesh, const OrientationField& fie
   Progress progress(options.progress);
   Placement placement;
   placement.offsets.push_back(0);
+  reserve_points(tracer, placement);
   const auto place = options.method == PlacementMethod::longest ? place_longest : place_by_contest;
   const double coverage =
       place({mesh, tracer, singular_region(mesh, field, options.singularity_radius)}, options, progress, placement);
