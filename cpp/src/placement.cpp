@@ -269,12 +269,12 @@ void append(const detail::PlacedLine& line, Placement& placement) {
 /// width / d_sep times. Memory that is not written to costs nothing; to move what is full to twice as much costs three
 /// times the result.
 void reserve_points(const StreamlineTracer& tracer, Placement& placement) {
-  const auto& sheet = tracer.sheet();
-  double count = 0;
-  for (std::int32_t t = 0; t < sheet.triangle_count(); ++t) {
-    count += sheet.crossings[t].width / tracer.separation_distance(sheet.mesh_triangles[t]);
-  }
-  const auto most = static_cast<std::size_t>(std::min(count, most_reserved * sheet.triangle_count()));
+  const auto& options = tracer.options();
+  const auto& varying = options.separation_distances;
+  const double least = varying.empty() ? options.separation_distance : *std::ranges::min_element(varying);
+  double width = 0;
+  for (const auto& crossings : tracer.sheet().crossings) width += crossings.width;
+  const auto most = static_cast<std::size_t>(std::min(width / least, most_reserved * tracer.sheet().triangle_count()));
   placement.points.reserve(most);
   placement.barycentric.reserve(most);
   placement.point_triangles.reserve(most);

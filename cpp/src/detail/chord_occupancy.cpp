@@ -51,7 +51,8 @@ ChordOccupancy::ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& 
       tiles_(mesh.triangle_count()) {
   make_tiles();
   // Where the surface was cut it goes on for distances.
-  for (std::int32_t edge = 0; edge < static_cast<std::int32_t>(mesh.edges().size()); ++edge) {
+  const bool is_cut = !mesh.repairs().non_manifold_edges.empty();
+  for (std::int32_t edge = 0; is_cut && edge < static_cast<std::int32_t>(mesh.edges().size()); ++edge) {
     const auto triangles = mesh.edge_triangles(edge);
     if (triangles.size() < 3) continue;
     for (const auto t : triangles) {

@@ -35,6 +35,8 @@ class IntervalSets {
     return node == full;
   }
 
+  void prefetch(std::int32_t item) const { __builtin_prefetch(items_.data() + item); }
+
   void fill(std::int32_t item);
   /// Intervals that touch become one.
   void add(std::int32_t item, Interval interval);

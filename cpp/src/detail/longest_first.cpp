@@ -79,11 +79,12 @@ class LongestFirst {
       const double position = edge_position(crossings_[triangle], exit, coordinate);
       triangle = way_out.triangle;
       const auto& crossings = crossings_[triangle];
+      // It goes on into one of two triangles; by the time it is known which, both will be at hand.
       if (way_out.role == low_high) {
-        prefetch(crossings.neighbours[low_middle]);
-        prefetch(crossings.neighbours[middle_high]);
+        prefetch(crossings.neighbours[low_middle], mind_others);
+        prefetch(crossings.neighbours[middle_high], mind_others);
       } else {
-        prefetch(crossings.neighbours[low_high]);
+        prefetch(crossings.neighbours[low_high], mind_others);
       }
       coordinate = chord_coordinate(crossings, way_out.role, position);
       if (mind_others && occupancy_.stopped().contains(triangle, coordinate)) {
@@ -98,9 +99,10 @@ class LongestFirst {
     return StopReason::max_steps;
   }
 
-  void prefetch(std::int32_t t) const {
+  void prefetch(std::int32_t t, bool mind_others) const {
     __builtin_prefetch(crossings_.data() + t);
     visited_.prefetch(t);
+    if (mind_others) occupancy_.stopped().prefetch(t);
   }
 
   Chord make_chord(std::int32_t triangle, double coordinate, bool leaves_through_low_high) const {
@@ -165,6 +167,7 @@ class LongestFirst {
     const double sparse = sparse_separation * mean_edge_length();
     const bool is_local = occupancy_.has_seed_sets();
     for (const auto first : sheet_.ranks) {  // in the mesh's order: the sheet's depends on the axes
+      if (served[first]) continue;
       for (seeds.push_back(first); !seeds.empty();) {
         const auto t = seeds.back();
         seeds.pop_back();
@@ -219,9 +222,20 @@ class LongestFirst {
     }
   }
 
+  /// Of the mesh, in its order.
+  std::vector<std::int32_t> triangles_with_gaps() const {
+    std::vector<std::int32_t> triangles;
+    for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
+      if (!occupancy_.unseeded().is_full(t)) triangles.push_back(sheet_.mesh_triangles[t]);
+    }
+    std::sort(triangles.begin(), triangles.end());
+    return triangles;
+  }
+
   /// Candidates through all gaps that are left, and what of them fits; false if it was stopped.
   bool fill_gaps(const std::function<bool()>& go_on) {
-    for (const auto t : sheet_.ranks) {
+    for (const auto mesh_triangle : triangles_with_gaps()) {
+      const auto t = sheet_.ranks[mesh_triangle];
       if (occupancy_.unseeded().is_full(t)) continue;
       for (const auto& gap : occupancy_.unseeded().gaps(t)) {
         if (gap.high - gap.low < least_gap) continue;

@@ -47,7 +47,7 @@ struct TriangleQuestion {
   float slack;   ///< more than single precision loses
 };
 
-/// The segments of one group for which something holds, by bit. Where the triangle lies before the start, as seen along
+/// The segments of one group for which something holds, by bit. Of those near: where the triangle lies before the start, as seen along
 /// the segment, or beyond the end, only the ball there can meet it.
 struct SegmentsNear {
   unsigned are_near;  ///< the capsule may enter the triangle's disc

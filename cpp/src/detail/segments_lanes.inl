@@ -55,6 +55,8 @@ inline SegmentsNear segments_near(const Segments& segments, int group, const Tri
   for (int i = 0; i < Segments::group_size; i += floats) {
     const int first = group + i;
     const Lanes limit = question.radius + question.share * load(segments.reach, first);
+    const unsigned are_near = bits(load(segments.square, first) <= limit * limit);
+    if (are_near == 0) continue;
     Lanes lowest = all(1e30F), highest = all(-1e30F);
     for (const auto& corner : question.corners) {
       const Lanes along = (corner.x - load(segments.x, first)) * load(segments.dx, first) +
@@ -64,9 +66,9 @@ inline SegmentsNear segments_near(const Segments& segments, int group, const Tri
       highest = greatest(highest, along);
     }
     const Lanes length = load(segments.length, first), slack = all(question.slack);
-    result.are_near |= bits(load(segments.square, first) <= limit * limit) << i;
-    result.lie_before |= bits(highest + slack * length < 0) << i;
-    result.lie_beyond |= bits(lowest > (length + slack) * length) << i;
+    result.are_near |= are_near << i;
+    result.lie_before |= (are_near & bits(highest + slack * length < 0)) << i;
+    result.lie_beyond |= (are_near & bits(lowest > (length + slack) * length)) << i;
   }
   return result;
 }

@@ -31,8 +31,7 @@ constexpr std::array<double, 3> no_angles = {not_a_number, not_a_number, not_a_n
 /// The same, kept until the neighbours are known as well.
 struct SideAngles {
   /// The angle from a side's edge to the orientation, taken as running into the triangle, lies in (0, pi): `sine` and
-  /// `cosine` are its, times the side's length.
-  /// Not numbers without an orientation.
+  /// `cosine` are its, times the side's length; not numbers without an orientation.
   std::array<double, 3> sine, cosine;  ///< by Role
 };
 
