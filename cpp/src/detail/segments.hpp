@@ -47,8 +47,8 @@ struct TriangleQuestion {
   float slack;   ///< more than single precision loses
 };
 
-/// The segments of one group for which something holds, by bit. Of those near: where the triangle lies before the start, as seen along
-/// the segment, or beyond the end, only the ball there can meet it.
+/// The segments of one group for which something holds, by bit. Of those near: where the triangle lies before the
+/// start, as seen along the segment, or beyond the end, only the ball there can meet it.
 struct SegmentsNear {
   unsigned are_near;  ///< the capsule may enter the triangle's disc
   unsigned lie_before, lie_beyond;
