@@ -81,6 +81,21 @@ TEST_CASE("exact placement: with a clearance for seeds lines stay d_sep apart an
   }
 }
 
+TEST_CASE("exact placement: with a clearance for seeds long lines need d_sep only") {
+  // A strip so narrow that beside the first line there is d_sep, but nowhere the clearance.
+  const auto mesh = jittered_grid(24, 3).mesh();
+  const auto field = constant_field(mesh, Vector(1, 0, 0));
+  auto options = with(1);
+  options.seed_clearance = 1.9;
+  const auto count_long = [&] {
+    const auto lengths = place_streamlines(mesh, field, options).lengths;
+    return std::ranges::count_if(lengths, [](double length) { return length >= 9; });
+  };
+  const auto with_long_ones = count_long();
+  options.test_distance = 0.999;  // they would come nearer than d_sep
+  CHECK(with_long_ones > count_long());
+}
+
 TEST_CASE("exact placement: a clearance for seeds gives longer and fewer lines") {
   const auto mesh = sphere(4, 4).mesh();
   const auto field = smooth_field(mesh);
