@@ -96,8 +96,7 @@ struct RandomTriangle {
       : mesh(Soup{{vec3(draw_vector(random)), vec3(draw_vector(random)), vec3(draw_vector(random))}, {{0, 1, 2}}}
                  .mesh()),
         field(test::constant_field(mesh, draw_direction(mesh, random, flatness))),
-        sheet(make_sheet(mesh, field, 1)),
-        frame(sheet.low(0), sheet.middle(0), sheet.high(0), sheet.crossings[0].split) {}
+        sheet(make_sheet(mesh, field, 1)) {}
 
   /// Close to parallel to a side if `flatness` is small.
   static Vector draw_direction(const SurfaceMesh& mesh, Random& random, double flatness) {
@@ -113,23 +112,30 @@ struct RandomTriangle {
   SurfaceMesh mesh;
   OrientationField field;
   Sheet sheet;
-  ChordFrame frame;
 };
 
-/// One capsule in each lane: which one it is in must not matter.
-struct FourCapsules {
-  explicit FourCapsules(const Capsule& capsule, int lane, Random& random) {
-    for (int other = 0; other < capsule_lanes; ++other) {
-      const Vector move = other == lane ? Vector(0, 0, 0) : draw_vector(random, 0.1);
-      starts[other] = capsule.start + move;
-      ends[other] = capsule.end + move;
-      capsules.start[other] = &starts[other];
-      capsules.end[other] = &ends[other];
-      capsules.radius[other] = capsule.radius;
+/// One question in each lane, about triangles and capsules that differ: in which one it is asked must not matter.
+struct FourQuestions {
+  FourQuestions(const RandomTriangle& triangle, const Capsule& capsule, int lane, Random& random) {
+    const auto& sheet = triangle.sheet;
+    for (int other = 0; other < shadow_lanes; ++other) {
+      const auto moved = [&](const Vector& place) -> Vector {
+        return other == lane ? place : Vector(place + draw_vector(random, 0.1));
+      };
+      places[other] = {moved(sheet.low(0)), moved(sheet.middle(0)), moved(sheet.high(0)), moved(capsule.start),
+                       moved(capsule.end)};
+      const auto& [low, middle, high, start, end] = places[other];
+      questions.low[other] = &low;
+      questions.middle[other] = &middle;
+      questions.high[other] = &high;
+      questions.split[other] = other == lane ? sheet.crossings[0].split : 0.1 + 0.8 * random.unit();
+      questions.start[other] = &start;
+      questions.end[other] = &end;
+      questions.radius[other] = other == lane ? capsule.radius : random.unit();
     }
   }
-  std::array<Vector, capsule_lanes> starts, ends;
-  Capsules capsules{};
+  std::array<std::array<Vector, 5>, shadow_lanes> places;
+  ShadowQuestions questions;
 };
 
 bool holds(const ChordIntervals& chords, int lane, double chord) {
@@ -140,10 +146,11 @@ bool holds(const ChordIntervals& chords, int lane, double chord) {
 /// no less.
 void check_shadow(const RandomTriangle& triangle, const Capsule& capsule, Random& random) {
   const double tolerance = 1e-8 * (1 + capsule.radius);
-  const int lane = static_cast<int>(random.below(capsule_lanes));
-  const FourCapsules four(capsule, lane, random);
-  const auto shadows = chord_shadows(triangle.frame, four.capsules);
-  const auto cores = chord_cores(triangle.frame, four.capsules);
+  const int lane = static_cast<int>(random.below(shadow_lanes));
+  const FourQuestions four(triangle, capsule, lane, random);
+  const auto [shadows, width] = chord_shadows(four.questions);
+  const auto cores = chord_cores(four.questions);
+  CHECK(width[lane] == doctest::Approx(triangle.sheet.crossings[0].width).epsilon(1e-6));
   if (shadows.low[lane] <= shadows.high[lane]) CHECK((shadows.low[lane] >= 0 && shadows.high[lane] <= 1));
   for (int i = 0; i <= 60; ++i) {
     const double chord = std::clamp(i / 60.0, 1e-6, 1 - 1e-6);

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <cstring>
 
+#include "detail/chord_measures.hpp"
 #include "detail/chord_shadow.hpp"
 #include "detail/random.hpp"
 #include "detail/segments.hpp"
@@ -16,6 +18,10 @@ namespace shadow_variants {
 #define PECTINATE_KERNEL "detail/chord_shadow_lanes.inl"
 #include "detail/kernel_variants.inl"
 }  // namespace shadow_variants
+namespace measure_variants {
+#define PECTINATE_KERNEL "detail/chord_measures_lanes.inl"
+#include "detail/kernel_variants.inl"
+}  // namespace measure_variants
 namespace segment_variants {
 #define PECTINATE_KERNEL "detail/segments_lanes.inl"
 #include "detail/kernel_variants.inl"
@@ -45,22 +51,56 @@ TEST_CASE("kernels: the same bytes on any processor, for shadows and cores") {
   Random random(11);
   int some = 0;
   for (int round = 0; round < 20000; ++round) {
-    const ChordFrame frame(draw_vector(random), draw_vector(random), draw_vector(random), 0.02 + 0.96 * random.unit());
-    std::array<Vector, capsule_lanes + 1> points;
-    for (auto& point : points) point = draw_vector(random);
-    Capsules capsules;
-    for (int lane = 0; lane < capsule_lanes; ++lane) {
-      capsules.start[lane] = &points[lane];
-      capsules.end[lane] = &points[round % 7 == 0 ? lane : lane + 1];
-      capsules.radius[lane] = random.unit();
+    std::array<std::array<Vector, 5>, shadow_lanes> places;
+    ShadowQuestions questions;
+    for (int lane = 0; lane < shadow_lanes; ++lane) {
+      for (auto& place : places[lane]) place = draw_vector(random);
+      questions.low[lane] = &places[lane][0];
+      questions.middle[lane] = &places[lane][1];
+      questions.high[lane] = &places[lane][2];
+      questions.split[lane] = 0.02 + 0.96 * random.unit();
+      questions.start[lane] = &places[lane][3];
+      questions.end[lane] = &places[lane][round % 7 == 0 ? 3 : 4];
+      questions.radius[lane] = random.unit();
     }
-    const auto shadows = shadow_variants::any_processor::chord_shadows(frame, capsules);
-    CHECK(same_bytes(shadows, shadow_variants::with_avx2::chord_shadows(frame, capsules)));
-    const auto cores = shadow_variants::any_processor::chord_cores(frame, capsules);
-    CHECK(same_bytes(cores, shadow_variants::with_avx2::chord_cores(frame, capsules)));
-    for (int lane = 0; lane < capsule_lanes; ++lane) some += shadows.low[lane] <= shadows.high[lane];
+    const auto shadows = shadow_variants::any_processor::chord_shadows(questions);
+    CHECK(same_bytes(shadows, shadow_variants::with_avx2::chord_shadows(questions)));
+    const auto cores = shadow_variants::any_processor::chord_cores(questions);
+    CHECK(same_bytes(cores, shadow_variants::with_avx2::chord_cores(questions)));
+    for (int lane = 0; lane < shadow_lanes; ++lane) some += shadows.chords.low[lane] <= shadows.chords.high[lane];
   }
   CHECK(some > 20000);
+}
+
+TEST_CASE("kernels: the same bytes on any processor, for chords' measures") {
+  if (!__builtin_cpu_supports("avx2")) return;
+  Random random(13);
+  const auto draw = [&] { return vec3(draw_vector(random).normalized()); };
+  unsigned along_sides = 0;
+  for (int round = 0; round < 5000; ++round) {
+    std::array<std::array<Vec3, 5>, measured_lanes> places;
+    Faces faces;
+    for (int lane = 0; lane < measured_lanes; ++lane) {
+      auto& [a, b, c, normal, direction] = places[lane];
+      for (auto* place : {&a, &b, &c, &direction}) *place = draw();
+      const Vector side = vector(b) - vector(a);
+      normal = vec3(side.cross(vector(c) - vector(a)).normalized());
+      if (round % 5 == lane) direction = vec3(side.normalized());
+      for (int k = 0; k < 3; ++k) faces.corners[k][lane] = &places[lane][k];
+      faces.normals[lane] = &normal;
+      faces.directions[lane] = &direction;
+    }
+    const auto measures = measure_variants::any_processor::measure_chords(faces);
+    const auto others = measure_variants::with_avx2::measure_chords(faces);
+    CHECK(same_bytes(measures.cosine, others.cosine));
+    CHECK(same_bytes(measures.middle, others.middle));
+    CHECK(same_bytes(measures.split, others.split));
+    CHECK(same_bytes(measures.longest_chord, others.longest_chord));
+    CHECK(same_bytes(measures.width, others.width));
+    CHECK(measures.along_sides == others.along_sides);
+    along_sides |= measures.along_sides;
+  }
+  CHECK(along_sides == 15);
 }
 
 TEST_CASE("kernels: the same bytes on any processor, for distances and choices") {

@@ -48,7 +48,14 @@ ChordOccupancy::ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& 
       singular_(has_singular_ ? mesh.triangle_count() : 0),
       origin_(vector(mesh.vertices()[0])),
       slack_(size_slack * static_cast<float>(mesh.bounding_box_diagonal())),
-      tiles_(mesh.triangle_count()) {
+      tiles_(mesh.triangle_count()),
+      stop_marks_(sheet_, CapsuleMarks::Kind::shadows,
+                  [this](std::int32_t triangle, const Interval& chords) {
+                    stopped_.add(triangle, chords);
+                    if (has_seed_sets_) unseeded_.add(triangle, chords);
+                  }),
+      seed_marks_(sheet_, CapsuleMarks::Kind::cores,
+                  [this](std::int32_t triangle, const Interval& chords) { unseeded_.add(triangle, chords); }) {
   make_tiles();
   // Where the surface was cut it goes on for distances.
   const bool is_cut = !mesh.repairs().non_manifold_edges.empty();
@@ -153,6 +160,8 @@ void ChordOccupancy::add_block(const Polyline& line, std::size_t first, std::siz
       visit_border(reached, line, first);
     }
   }
+  stop_marks_.finish();
+  seed_marks_.finish();
 }
 
 void ChordOccupancy::fill_block(const Polyline& line, std::size_t first, std::size_t last) {
@@ -345,53 +354,13 @@ void ChordOccupancy::mark_exactly(std::int32_t triangle, const Polyline& line, s
                                   const Marking& marking) {
   const int count = choose_capsules(triangle, marking);
   if (count == 0) return;
-  const ChordFrame frame(sheet_.low(triangle), sheet_.middle(triangle), sheet_.high(triangle),
-                         sheet_.crossings[triangle].split);
-  joined_.reset();
-  for (int i = 0; i < count; i += capsule_lanes) {
-    const std::span chosen(&block_.chosen[i], static_cast<std::size_t>(std::min(capsule_lanes, count - i)));
-    const auto capsules = capsules_around(chosen, line, first, marking.clearance);
-    if (&marking.sets == &unseeded_) {
-      for (const auto& chords : chord_cores(frame, capsules)) join(triangle, chords, chosen, 0, marking.sets);
-    } else {
-      join(triangle, chord_shadows(frame, capsules), chosen, guard / frame.width, marking.sets);
-    }
+  for (int i = 0; i < count; ++i) {
+    const auto segment = block_.chosen[i];
+    const auto start = first + static_cast<std::size_t>(segment);
+    const double separation = block_.separation[segment];
+    marking.marks.ask({triangle, line.points[start], line.points[start + 1],
+                       marking.clearance * separation * (1 + guard), guard * separation});
   }
-  if (joined_) add_chords(triangle, *joined_, marking.sets);
-}
-
-/// Fewer than a full set of lanes are filled up with the last one.
-Capsules ChordOccupancy::capsules_around(std::span<const int> chosen, const Polyline& line, std::size_t first,
-                                         double clearance) const {
-  Capsules capsules;
-  for (std::size_t lane = 0; lane < capsule_lanes; ++lane) {
-    const auto segment = static_cast<std::size_t>(chosen[std::min(lane, chosen.size() - 1)]);
-    capsules.start[lane] = &line.points[first + segment];
-    capsules.end[lane] = &line.points[first + segment + 1];
-    capsules.radius[lane] = clearance * block_.separation[segment] * (1 + guard);
-  }
-  return capsules;
-}
-
-/// Joins chords to those at hand while they overlap, as most do; `margin` is in separation distances.
-void ChordOccupancy::join(std::int32_t triangle, const ChordIntervals& chords, std::span<const int> chosen,
-                          double margin, IntervalSets& sets) {
-  for (std::size_t lane = 0; lane < chosen.size(); ++lane) {
-    if (!(chords.low[lane] <= chords.high[lane])) continue;
-    const double rounding = margin * block_.separation[chosen[lane]];
-    const Interval more{chords.low[lane] - rounding, chords.high[lane] + rounding};
-    if (joined_ && more.low <= joined_->high && more.high >= joined_->low) {
-      joined_ = {std::min(joined_->low, more.low), std::max(joined_->high, more.high)};
-    } else {
-      if (joined_) add_chords(triangle, *joined_, sets);
-      joined_ = more;
-    }
-  }
-}
-
-void ChordOccupancy::add_chords(std::int32_t triangle, const Interval& chords, IntervalSets& sets) {
-  sets.add(triangle, chords);
-  if (has_seed_sets_ && &sets == &stopped_) unseeded_.add(triangle, chords);
 }
 
 double ChordOccupancy::free_share(std::int32_t triangle, const IntervalSets& sets) const {
@@ -408,8 +377,10 @@ double ChordOccupancy::free_share(std::int32_t triangle, const IntervalSets& set
 double ChordOccupancy::coverage() const {
   double free = 0, taken = 0;
   for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
-    if (!tracer_.has_direction(t)) continue;
-    const double share = free_share(sheet_.ranks[t], stopped_), area = mesh_.triangle_areas()[t];
+    const auto rank = sheet_.ranks[t];
+    if (!sheet_.has_direction(rank)) continue;
+    const double area = mesh_.triangle_areas()[t];
+    const double share = stopped_.is_full(rank) ? 0 : free_share(rank, stopped_);
     free += share * area;
     taken += (1 - share) * area;
   }

@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "detail/capsule.hpp"
-#include "detail/chord_shadow.hpp"
+#include "detail/capsule_marks.hpp"
 #include "detail/interval_sets.hpp"
 #include "detail/large_array.hpp"
 #include "detail/segments.hpp"
@@ -92,6 +91,7 @@ class ChordOccupancy {
     double clearance;
     float share;
     IntervalSets& sets;
+    CapsuleMarks& marks;
   };
 
   double free_share(std::int32_t triangle, const IntervalSets& sets) const;
@@ -114,20 +114,19 @@ class ChordOccupancy {
   void reach_neighbours(const Reached& from);
   void visit_border(Reached reached, const Polyline& line, std::size_t first);
   void mark_in(const Reached& reached, const Marking& marking, const Polyline& line, std::size_t first);
-  Marking stops() { return {clearance_.stop, static_cast<float>(clearance_.stop / greatest_clearance()), stopped_}; }
-  Marking seeds() { return {clearance_.seed, static_cast<float>(clearance_.seed / greatest_clearance()), unseeded_}; }
+  Marking stops() {
+    return {clearance_.stop, static_cast<float>(clearance_.stop / greatest_clearance()), stopped_, stop_marks_};
+  }
+  Marking seeds() {
+    return {clearance_.seed, static_cast<float>(clearance_.seed / greatest_clearance()), unseeded_, seed_marks_};
+  }
   /// From the point at hand to the nearest capsule, whose radii are this share of `reach`; negative inside.
   float nearest_capsule(float share) const;
   void mark(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking);
   float depth_inside(const Marking& marking) const;
   void fill(std::int32_t triangle, IntervalSets& sets);
   int choose_capsules(std::int32_t triangle, const Marking& marking);
-  void add_chords(std::int32_t triangle, const Interval& chords, IntervalSets& sets);
   void mark_exactly(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking);
-  Capsules capsules_around(std::span<const int> chosen, const Polyline& line, std::size_t first,
-                           double clearance) const;
-  void join(std::int32_t triangle, const ChordIntervals& chords, std::span<const int> chosen, double margin,
-            IntervalSets& sets);
   double greatest_clearance() const { return std::max(clearance_.stop, clearance_.seed); }
   double separation(std::int32_t triangle) const {
     return tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
@@ -146,7 +145,7 @@ class ChordOccupancy {
   std::vector<Reached> queue_;
   std::vector<std::int32_t> changed_;
   Block block_;
-  std::optional<Interval> joined_;  ///< chords of the triangle at hand, not yet added
+  CapsuleMarks stop_marks_, seed_marks_;
 };
 
 }  // namespace pectinate::detail

@@ -12,14 +12,20 @@ struct LaneVector {
 inline LaneVector operator-(const LaneVector& a, const LaneVector& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
+inline LaneVector operator+(const LaneVector& a, const LaneVector& b) {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline LaneVector operator/(const LaneVector& a, const Lanes& divisor) {
+  return {a.x / divisor, a.y / divisor, a.z / divisor};
+}
 inline LaneVector operator*(const Lanes& factor, const LaneVector& a) {
   return {factor * a.x, factor * a.y, factor * a.z};
 }
 inline Lanes dot(const LaneVector& a, const LaneVector& b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-inline Lanes dot(const LaneVector& a, const Vector& b) {
-  return a.x * b.x() + a.y * b.y() + a.z * b.z();
+inline LaneVector cross(const LaneVector& a, const LaneVector& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
 inline Lanes all(double value) {
@@ -51,24 +57,55 @@ inline Lanes lanes(const Value& value) {
   }
 }
 
+/// Of the lanes from `first` on.
+inline LaneVector load(const ShadowQuestions::Places& places, int first) {
+  const auto coordinate = [&](int k) { return lanes([&](int lane) { return (*places[first + lane])[k]; }); };
+  return {coordinate(0), coordinate(1), coordinate(2)};
+}
+inline Lanes load(const ShadowQuestions::Numbers& numbers, int first) {
+  return lanes([&](int lane) { return numbers[first + lane]; });
+}
+inline void store(const Lanes& values, ShadowQuestions::Numbers& numbers, int first) {
+  __builtin_memcpy(&numbers[first], &values, sizeof values);
+}
+
+/// Triangles laid flat: x along their chords, w across them, from the low corner at the origin to the high one.
+struct ChordFrame {
+  LaneVector low, along, across, normal;  // a corner, and unit vectors
+  Lanes split, width, high_x, middle_x;
+};
+
+inline ChordFrame lay_flat(const ShadowQuestions& questions, int first) {
+  ChordFrame frame;
+  frame.low = load(questions.low, first);
+  frame.split = load(questions.split, first);
+  const LaneVector middle = load(questions.middle, first), low_to_high = load(questions.high, first) - frame.low;
+  const LaneVector chord = frame.low + frame.split * low_to_high - middle;
+  frame.along = chord / root(dot(chord, chord));
+  frame.high_x = dot(frame.along, low_to_high);
+  frame.middle_x = dot(frame.along, middle - frame.low);
+  const LaneVector across = low_to_high - frame.high_x * frame.along;
+  frame.width = root(dot(across, across));
+  frame.across = across / frame.width;
+  frame.normal = cross(frame.along, frame.across);
+  return frame;
+}
+
 /// Capsules in the frame's coordinates, and what is often asked about them.
 struct FlatCapsules {
   LaneVector start, axis;
   Lanes radius, radius_square, axis_square, inverse;
 };
 
-/// Of the lanes from `first` on.
-inline FlatCapsules flatten(const ChordFrame& frame, const Capsules& capsules, int first) {
-  const auto flat = [&](const std::array<const Vector*, capsule_lanes>& points) -> LaneVector {
-    const auto coordinate = [&](int k) { return lanes([&](int lane) { return (*points[first + lane])[k]; }); };
-    const LaneVector from_low{coordinate(0) - frame.low.x(), coordinate(1) - frame.low.y(),
-                              coordinate(2) - frame.low.z()};
+inline FlatCapsules flatten(const ChordFrame& frame, const ShadowQuestions& questions, int first) {
+  const auto flat = [&](const ShadowQuestions::Places& places) -> LaneVector {
+    const LaneVector from_low = load(places, first) - frame.low;
     return {dot(from_low, frame.along), dot(from_low, frame.across), dot(from_low, frame.normal)};
   };
   FlatCapsules result;
-  result.start = flat(capsules.start);
-  result.axis = flat(capsules.end) - result.start;
-  result.radius = lanes([&](int lane) { return capsules.radius[first + lane]; });
+  result.start = flat(questions.start);
+  result.axis = flat(questions.end) - result.start;
+  result.radius = load(questions.radius, first);
   result.radius_square = result.radius * result.radius;
   result.axis_square = dot(result.axis, result.axis);
   const Mask has_length = result.axis_square > 0;
@@ -84,7 +121,7 @@ struct Corner {
   Mask inside;        // the capsule
 };
 
-inline Corner look(const FlatCapsules& capsules, double x, double w) {
+inline Corner look(const FlatCapsules& capsules, const Lanes& x, const Lanes& w) {
   const LaneVector from_start{x - capsules.start.x, w - capsules.start.y, -capsules.start.z};
   const Lanes along = dot(from_start, capsules.axis) * capsules.inverse;
   const LaneVector across = from_start - along * capsules.axis;
@@ -97,7 +134,7 @@ struct View {
 };
 
 inline View look(const FlatCapsules& capsules, const ChordFrame& frame) {
-  return {look(capsules, 0, 0), look(capsules, frame.middle_x, frame.split * frame.width),
+  return {look(capsules, all(0), all(0)), look(capsules, frame.middle_x, frame.split * frame.width),
           look(capsules, frame.high_x, frame.width)};
 }
 
@@ -118,10 +155,6 @@ struct Hull {
   void include(const Part& part) {
     low = part.is_some ? least(low, part.low) : low;
     high = part.is_some ? greatest(high, part.high) : high;
-  }
-  void store(ChordIntervals& intervals, int first) const {
-    __builtin_memcpy(&intervals.low[first], &low, sizeof low);
-    __builtin_memcpy(&intervals.high[first], &high, sizeof high);
   }
 };
 
@@ -188,7 +221,7 @@ inline std::array<Place, 2> extremes(const FlatCapsules& capsules, const ChordFr
   // at the height at which both terms change alike.
   const Lanes slope = root(dw * dw + dh * dh);
   const Lanes extreme_height = (dh < 0 ? -radius : radius) * dw / (slope > 0 ? slope : all(1));
-  const double inverse_width = 1 / frame.width;
+  const Lanes inverse_width = 1 / frame.width;
   const auto extreme = [&](double sign) -> Place {
     const Lanes bent = clamp((sign * extreme_height - h) * inverse_rise, low, high);
     const Lanes t = is_level ? (sign * dw > 0 ? high : low) : bent;
@@ -209,7 +242,7 @@ inline Hull shadows(const ChordFrame& frame, const FlatCapsules& capsules) {
   hull.include(part_inside(capsules, low, high));
   const auto below = part_inside(capsules, low, middle), above = part_inside(capsules, middle, high);
   hull.include({below.low * frame.split, below.high * frame.split, below.is_some});
-  const double rest = 1 - frame.split;
+  const Lanes rest = 1 - frame.split;
   hull.include({frame.split + above.low * rest, frame.split + above.high * rest, above.is_some});
   return hull;
 }
@@ -218,29 +251,37 @@ inline std::array<Hull, 2> cores(const ChordFrame& frame, const FlatCapsules& ca
   const auto [low, middle, high] = look(capsules, frame);
   // A chord lies in a convex set if both its ends do: one on low-high, the other on one of the other sides.
   const auto one_end = part_inside(capsules, low, high);
-  const auto both_ends = [&](const Part& other_end, double from, double to) {
+  const auto both_ends = [&](const Part& other_end, const Lanes& from, const Lanes& to) {
     Hull hull;
     hull.include({greatest(one_end.low, from + other_end.low * (to - from)),
                   least(one_end.high, from + other_end.high * (to - from)), one_end.is_some & other_end.is_some});
     return hull;
   };
-  return {both_ends(part_inside(capsules, low, middle), 0, frame.split),
-          both_ends(part_inside(capsules, middle, high), frame.split, 1)};
+  return {both_ends(part_inside(capsules, low, middle), all(0), frame.split),
+          both_ends(part_inside(capsules, middle, high), frame.split, all(1))};
 }
 
-inline ChordIntervals chord_shadows(const ChordFrame& frame, const Capsules& capsules) {
-  ChordIntervals result;
-  for (int first = 0; first < capsule_lanes; first += doubles) {
-    shadows(frame, flatten(frame, capsules, first)).store(result, first);
+inline void store(const Hull& hull, ChordIntervals& intervals, int first) {
+  store(hull.low, intervals.low, first);
+  store(hull.high, intervals.high, first);
+}
+
+inline Shadows chord_shadows(const ShadowQuestions& questions) {
+  Shadows result;
+  for (int first = 0; first < shadow_lanes; first += doubles) {
+    const auto frame = lay_flat(questions, first);
+    store(shadows(frame, flatten(frame, questions, first)), result.chords, first);
+    store(frame.width, result.width, first);
   }
   return result;
 }
 
-inline std::array<ChordIntervals, 2> chord_cores(const ChordFrame& frame, const Capsules& capsules) {
+inline std::array<ChordIntervals, 2> chord_cores(const ShadowQuestions& questions) {
   std::array<ChordIntervals, 2> result;
-  for (int first = 0; first < capsule_lanes; first += doubles) {
-    const auto hulls = cores(frame, flatten(frame, capsules, first));
-    for (const int part : {0, 1}) hulls[part].store(result[part], first);
+  for (int first = 0; first < shadow_lanes; first += doubles) {
+    const auto frame = lay_flat(questions, first);
+    const auto hulls = cores(frame, flatten(frame, questions, first));
+    for (const int part : {0, 1}) store(hulls[part], result[part], first);
   }
   return result;
 }

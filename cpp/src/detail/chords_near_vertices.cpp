@@ -47,14 +47,17 @@ class VertexSearch {
   }
 
   std::optional<Interval> chords_near(std::int32_t rank, const Vector& vertex) const {
-    const ChordFrame frame(sheet_.low(rank), sheet_.middle(rank), sheet_.high(rank), sheet_.crossings[rank].split);
-    Capsules balls;
-    balls.start.fill(&vertex);
-    balls.end.fill(&vertex);
-    balls.radius.fill(radius_ * (1 + guard));
-    const auto chords = chord_shadows(frame, balls);
+    ShadowQuestions questions;
+    questions.low.fill(&sheet_.low(rank));
+    questions.middle.fill(&sheet_.middle(rank));
+    questions.high.fill(&sheet_.high(rank));
+    questions.split.fill(sheet_.crossings[rank].split);
+    questions.start.fill(&vertex);
+    questions.end.fill(&vertex);
+    questions.radius.fill(radius_ * (1 + guard));
+    const auto [chords, width] = chord_shadows(questions);
     if (!(chords.low[0] <= chords.high[0])) return std::nullopt;
-    const double margin = guard * radius_ / frame.width;
+    const double margin = guard * radius_ / width[0];
     return Interval{chords.low[0] - margin, chords.high[0] + margin};
   }
 

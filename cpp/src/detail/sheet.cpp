@@ -8,32 +8,20 @@
 #include <numbers>
 #include <utility>
 
+#include "detail/chord_measures.hpp"
 #include "detail/curve_order.hpp"
 
 namespace pectinate::detail {
 namespace {
 
-/// An orientation this close to a side, in radians, is turned away from it: the infinitesimal change of section 2.4.
-constexpr double least_angle_to_side = 1e-9;
 /// Below this an angle has no sign: parallel orientations turn the same way on a rotated mesh.
 constexpr double rounding = 1e-12;
-/// Keeps chords apart from sides in triangles so thin that no orientation is away from all of them.
-constexpr double least_split = 1e-12;
 
-/// How a triangle's orientation stands to its sides: their parts across it and along it.
-struct Sides {
-  std::array<double, 3> across, along;
-};
-
+/// Cosines of the angles, in (0, pi), from a triangle's edges to its orientation as it runs inwards there; by Role. Not
+/// numbers without an orientation.
+using SideCosines = std::array<double, 3>;
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-constexpr std::array<double, 3> no_angles = {not_a_number, not_a_number, not_a_number};
-
-/// The same, kept until the neighbours are known as well.
-struct SideAngles {
-  /// The angle from a side's edge to the orientation, taken as running into the triangle, lies in (0, pi): `sine` and
-  /// `cosine` are its, times the side's length; not numbers without an orientation.
-  std::array<double, 3> sine, cosine;  ///< by Role
-};
+constexpr SideCosines no_cosines = {not_a_number, not_a_number, not_a_number};
 
 /// An orientation turned in its plane away from a side that it is parallel to.
 Vector turned_away(const Vector& direction, const Vector& side, const Vector& normal) {
@@ -42,45 +30,16 @@ Vector turned_away(const Vector& direction, const Vector& side, const Vector& no
   return (direction + turn * normal.cross(direction)).normalized();
 }
 
-/// The corner between the others across the orientation: there the two sides beside it turn the same way.
-int corner_between(const std::array<double, 3>& rise) {
-  const bool first = rise[0] <= 0, second = rise[1] <= 0, third = rise[2] <= 0;
-  if (third == first) return 0;
-  return first == second ? 1 : 2;
-}
-
-/// A triangle's place and orientation.
-struct Face {
-  std::array<Vector, 3> corners;
-  Vector normal, direction;
-};
-
-/// Measures the chords of one triangle; fills all but what lies beyond its sides.
-Sides measure_chords(const Face& face, TriangleCrossings& crossings) {
-  const auto& [a, b, c] = face.corners;
-  const std::array<Vector, 3> sides = {b - a, c - b, a - c};
-  std::array<double, 3> rise, run;
-  const auto measure = [&](const Vector& along) {
-    const Vector across = face.normal.cross(along);
-    for (int k = 0; k < 3; ++k) {
-      rise[k] = sides[k].dot(across);
-      run[k] = sides[k].dot(along);
-    }
-  };
-  Vector along = face.direction;
-  measure(along);
+/// A triangle's orientation, turned away from all sides that it is parallel to.
+Vec3 turned_away(const std::array<const Vec3*, 3>& corners, const Vec3& normal, const Vec3& direction) {
+  Vector along = vector(direction);
   for (int k = 0; k < 3; ++k) {
-    if (std::abs(rise[k]) >= least_angle_to_side * std::abs(run[k])) continue;
-    along = turned_away(along, sides[k], face.normal);
-    measure(along);
+    const Vector side = vector(*corners[(k + 1) % 3]) - vector(*corners[k]);
+    const Vector across = vector(normal).cross(along);
+    if (std::abs(side.dot(across)) >= least_angle_to_side * std::abs(side.dot(along))) continue;
+    along = turned_away(along, side, vector(normal));
   }
-  const int m = corner_between(rise);
-  const int opposite = (m + 1) % 3;
-  crossings.middle = static_cast<std::uint8_t>(m);
-  crossings.split = std::clamp(-rise[m] / rise[opposite], least_split, 1 - least_split);
-  crossings.longest_chord = static_cast<float>(std::abs(run[m] + crossings.split * run[opposite]));
-  crossings.width = static_cast<float>(std::abs(rise[opposite]));
-  return {rise, run};
+  return vec3(along);
 }
 
 /// Makes a sheet triangle by triangle.
@@ -92,7 +51,7 @@ class SheetMaker {
         // pi disables the criterion, whatever the rounding.
         least_turn_cosine_(abrupt_turn_angle < std::numbers::pi ? std::cos(abrupt_turn_angle) : -2),
         vertex_ranks_(curve_ranks(mesh.vertices())),
-        angles_(mesh.triangle_count()) {}
+        cosines_(mesh.triangle_count()) {}
 
   Sheet make() && {
     sheet_.vertices.resize(mesh_.vertices().size());
@@ -104,13 +63,8 @@ class SheetMaker {
     sheet_.mesh_triangles.resize(count);
     sheet_.corners.resize(count);
     sheet_.crossings.resize(count);
-    for (std::int32_t t = 0; t < count; ++t) {
-      if (t + measured_ahead < count) prefetch(sheet_.ranks[t + measured_ahead]);
-      measure(t, sheet_.ranks[t]);
-    }
-    for (std::int32_t i = 0; i < count; ++i) {
-      for (const auto role : {low_high, low_middle, middle_high}) set_exit(i, role);
-    }
+    for (std::int32_t t = 0; t < count; t += measured_lanes) measure(t, std::min(count - t, measured_lanes));
+    set_exits();
     return std::move(sheet_);
   }
 
@@ -118,60 +72,106 @@ class SheetMaker {
   static constexpr std::int32_t measured_ahead = 8;
 
   /// What will soon be written lies scattered.
-  void prefetch(std::int32_t i) const {
+  void prefetch(std::int32_t t) const {
+    const auto i = sheet_.ranks[std::min(t, static_cast<std::int32_t>(sheet_.ranks.size()) - 1)];
     __builtin_prefetch(&sheet_.mesh_triangles[i], 1);
     __builtin_prefetch(&sheet_.corners[i], 1);
     __builtin_prefetch(&sheet_.crossings[i], 1);
-    __builtin_prefetch(&angles_[i], 1);
+    __builtin_prefetch(&cosines_[i], 1);
   }
 
-  void measure(std::int32_t t, std::int32_t i) {
-    sheet_.mesh_triangles[i] = t;
-    const auto& corners = mesh_.triangles()[t];
-    auto& crossings = sheet_.crossings[i];  // in place: to copy what was just written piece by piece makes it wait
-    crossings = {};
-    Sides sides{no_angles, no_angles};
-    if (field_.has_direction(t)) {
-      const auto at = [&](int k) { return vector(mesh_.vertices()[corners[k]]); };
-      sides = measure_chords(
-          {{at(0), at(1), at(2)}, vector(mesh_.triangle_normals()[t]), vector(field_.directions()[t])}, crossings);
+  /// Fewer than a full set of lanes are filled up with the last one.
+  void measure(std::int32_t first, std::int32_t count) {
+    Faces faces;
+    for (std::int32_t lane = 0; lane < measured_lanes; ++lane) {
+      const auto t = first + std::min(lane, count - 1);
+      prefetch(t + measured_ahead);
+      const auto& corners = mesh_.triangles()[t];
+      for (int k = 0; k < 3; ++k) faces.corners[k][lane] = &mesh_.vertices()[corners[k]];
+      faces.normals[lane] = &mesh_.triangle_normals()[t];
+      faces.directions[lane] = &field_.directions()[t];
     }
-    const int m = crossings.middle;
-    sheet_.corners[i] = {vertex_ranks_[corners[(m + 1) % 3]], vertex_ranks_[corners[m]],
-                         vertex_ranks_[corners[(m + 2) % 3]]};
-    auto& angles = angles_[i];
-    for (int k = 0; k < 3; ++k) {
+    auto measures = measure_chords(faces);
+    if (measures.along_sides != 0) measures = measure_turned(first, count, faces, measures.along_sides);
+    for (std::int32_t lane = 0; lane < count; ++lane) fill(first + lane, measures, lane);
+  }
+
+  ChordMeasures measure_turned(std::int32_t first, std::int32_t count, Faces faces, unsigned along_sides) const {
+    std::array<Vec3, measured_lanes> turned;
+    for (std::int32_t lane = 0; lane < count; ++lane) {
+      if (!(along_sides >> lane & 1) || !field_.has_direction(first + lane)) continue;
+      turned[lane] = turned_away({faces.corners[0][lane], faces.corners[1][lane], faces.corners[2][lane]},
+                                 *faces.normals[lane], *faces.directions[lane]);
+      faces.directions[lane] = &turned[lane];
+    }
+    return measure_chords(faces);
+  }
+
+  /// Fills a triangle's records, but for what its neighbours' must be known for. Reads before it writes: for all that
+  /// the compiler knows, what is written might be what is read next.
+  void fill(std::int32_t t, const ChordMeasures& measures, std::int32_t lane) {
+    const bool has_direction = field_.has_direction(t);
+    const int m = has_direction ? static_cast<int>(measures.middle[lane]) : 0;
+    // Corners low, middle, high, and the sides that begin there: low-high, low-middle, middle-high.
+    static constexpr std::int32_t orders[3][3] = {{1, 0, 2}, {2, 1, 0}, {0, 2, 1}};
+    const auto& order = orders[m];
+    static constexpr double signs[2] = {-1, 1};
+    const auto& corners = mesh_.triangles()[t];
+    const auto* const vertex_ranks = vertex_ranks_.data();
+    const auto* const ranks = sheet_.ranks.data();
+    const auto i = ranks[t];
+    std::array<std::int32_t, 3> vertices, neighbours;
+    std::array<std::uint8_t, 3> codes;
+    SideCosines cosines;
+    for (const auto role : {low_high, low_middle, middle_high}) {
+      const int k = order[role];
       const auto& across = mesh_.neighbour(t, k);
-      const auto role = role_of(k, m);
       const bool runs_along = mesh_.runs_along(t, k);
-      // Inside is to the left of a side; the orientation runs there if the side falls across it.
-      angles.sine[role] = std::abs(sides.across[k]);
-      angles.cosine[role] = (sides.across[k] < 0) == runs_along ? sides.along[k] : -sides.along[k];
-      crossings.neighbours[role] = across.triangle < 0 ? -1 : sheet_.ranks[across.triangle];
+      vertices[role] = vertex_ranks[corners[k]];
+      neighbours[role] = across.triangle < 0 ? -1 : ranks[across.triangle];
+      const double cosine = measures.cosine[k][lane];
+      cosines[role] = cosine * signs[runs_along];
       // The side there will be replaced by its role. Chord coordinates run low to high, sides run middle-low, low-high,
       // high-middle.
-      const auto side_there = static_cast<Role>(std::max<std::int8_t>(across.side, 0));
-      crossings.codes[role] = TriangleCrossings::make_code(side_there, runs_along != (role == low_high), 0);
+      const auto side_there = static_cast<Role>(across.side & 3);
+      codes[role] = TriangleCrossings::make_code(side_there, runs_along != (role == low_high), 0);
     }
+    sheet_.mesh_triangles[i] = t;
+    sheet_.corners[i] = vertices;
+    auto& crossings = sheet_.crossings[i];
+    crossings.neighbours = neighbours;
+    crossings.codes = codes;
+    crossings.middle = static_cast<std::uint8_t>(m);
+    crossings.split = has_direction ? measures.split[lane] : 0;
+    crossings.longest_chord = has_direction ? static_cast<float>(measures.longest_chord[lane]) : 0;
+    crossings.width = has_direction ? static_cast<float>(measures.width[lane]) : 0;
+    cosines_[i] = has_direction ? cosines : no_cosines;
   }
 
-  /// Notes what lies beyond a side.
-  void set_exit(std::int32_t i, Role role) {
-    auto& crossings = sheet_.crossings[i];
-    const auto j = crossings.neighbours[role];
-    const bool is_reversed = crossings.is_reversed(role);
-    if (j < 0) {
-      crossings.codes[role] = TriangleCrossings::make_code(low_high, is_reversed, stop(StopReason::boundary));
-      return;
+  /// Notes what lies beyond all sides.
+  void set_exits() {
+    auto* const all = sheet_.crossings.data();
+    const auto* const cosines = cosines_.data();
+    const auto count = sheet_.triangle_count();
+    for (std::int32_t i = 0; i < count; ++i) {
+      auto& crossings = all[i];
+      for (const auto role : {low_high, low_middle, middle_high}) {
+        const auto j = crossings.neighbours[role];
+        const auto code = crossings.codes[role];
+        if (j < 0) {
+          crossings.codes[role] = TriangleCrossings::make_code(low_high, code & 4, stop(StopReason::boundary));
+          continue;
+        }
+        const Role role_there = role_of(code & 3, all[j].middle);
+        const double here = cosines[i][role], there = cosines[j][role_there];
+        // Unfolded about the edge, a straight way leaves at the angle here and goes on at pi minus it: the turn is the
+        // difference of that and the angle there.
+        const double turn_cosine = std::sqrt((1 - here * here) * (1 - there * there)) - here * there;
+        const bool goes_on = turn_cosine >= least_turn_cosine_;
+        crossings.codes[role] =
+            static_cast<std::uint8_t>((code & 4) | role_there | (goes_on ? 0 : why_stop(i, j) << 3));
+      }
     }
-    const Role role_there = role_of(crossings.codes[role] & 3, sheet_.crossings[j].middle);
-    const auto &here = angles_[i], &there = angles_[j];
-    const double sine = here.sine[role], cosine = here.cosine[role];
-    // Unfolded about the edge, a straight way leaves at the angle here and goes on at pi minus it: the turn is the
-    // difference of that and the angle there.
-    const double turn_cosine = sine * there.sine[role_there] - cosine * there.cosine[role_there];
-    const bool goes_on = turn_cosine >= least_turn_cosine_ * (sine * sine + cosine * cosine);
-    crossings.codes[role] = TriangleCrossings::make_code(role_there, is_reversed, goes_on ? 0 : why_stop(i, j));
   }
 
   /// Why streamlines stop between two triangles (criterion 4, or where the field ends).
@@ -186,7 +186,7 @@ class SheetMaker {
   const OrientationField& field_;
   double least_turn_cosine_;
   std::vector<std::int32_t> vertex_ranks_;
-  LargeArray<SideAngles> angles_;
+  LargeArray<SideCosines> cosines_;
   Sheet sheet_;
 };
 
