@@ -7,16 +7,26 @@
 namespace pectinate::detail {
 namespace {
 
-/// Stored chords per triangle: for so many there is room at first, and with so many it is enough.
-constexpr std::size_t most_usual_chords = 4, too_many_chords = 16;
+/// Chords per triangle: before there are more than the first, none are dropped; more than the second are too many.
+constexpr double most_usual_chords = 3.5, too_many_chords = 12;
+/// Memory is reserved for more, because it costs nothing as long as it is not written to; to move what is stored to a
+/// larger place would take twice as much.
+constexpr double most_reserved_chords = 14, most_reserved_pieces = 2;
+/// Of the chords that are left when some are dropped, so many may be added before it is done again.
+constexpr double growth = 0.25;
 
 }  // namespace
 
-Candidates::Candidates(std::size_t triangle_count, double minimum_length)
-    : minimum_length_(minimum_length),
-      most_chords_(most_usual_chords * triangle_count),
-      too_many_chords_(too_many_chords * triangle_count) {
-  chords_.reserve(most_chords_);
+Candidates::Candidates(std::size_t triangle_count, double minimum_length, const Bonus& bonus)
+    : minimum_length_(minimum_length), bonus_(bonus) {
+  const auto times = [&](double factor) {
+    return static_cast<std::size_t>(factor * static_cast<double>(triangle_count));
+  };
+  most_chords_ = times(most_usual_chords);
+  too_many_chords_ = times(too_many_chords);
+  chords_.reserve(times(most_reserved_chords));
+  trajectories_.reserve(times(most_reserved_pieces));
+  heap_.reserve(times(most_reserved_pieces));
 }
 
 double Candidates::length(const Stretch& stretch) const {
@@ -27,12 +37,12 @@ double Candidates::length(const Stretch& stretch) const {
 
 void Candidates::add(const Trajectory& trajectory) {
   trajectories_.push_back(trajectory);
-  push(trajectory.stretch, length(trajectory.stretch), static_cast<std::int32_t>(trajectories_.size()) - 1);
+  push(trajectory.stretch(), length(trajectory.stretch()), static_cast<std::int32_t>(trajectories_.size()) - 1);
 }
 
 void Candidates::push(const Stretch& stretch, double length, std::int32_t trajectory, bool is_self_free) {
   if (stretch.first >= stretch.last || length < minimum_length_) return;
-  heap_.push_back({length * trajectories_[trajectory].bonus, stretch, trajectory, is_self_free});
+  heap_.emplace_back(key(length, trajectory), stretch, trajectory, is_self_free);
   std::push_heap(heap_.begin(), heap_.end());
 }
 
@@ -48,21 +58,19 @@ Piece Candidates::pop() {
 void Candidates::prefetch_next() const {
   if (heap_.empty()) return;
   constexpr std::int64_t at_first = 32, chords_per_line = 64 / sizeof(Chord);
-  const auto [first, last] = heap_.front().stretch;
+  const auto [first, last] = heap_.front().stretch();
   for (auto i = first; i < std::min(last, first + at_first); i += chords_per_line) __builtin_prefetch(&chords_[i]);
 }
 
 bool Candidates::is_first(double length, std::int32_t trajectory) const {
-  return length >= minimum_length_ && (heap_.empty() || length * trajectories_[trajectory].bonus >= heap_.front().key);
+  return length >= minimum_length_ && (heap_.empty() || key(length, trajectory) >= heap_.front().key);
 }
 
-bool Candidates::make_room() {
-  if (!are_too_many() && chords_.size() <= most_chords_ / 8 * 7) return false;
+void Candidates::make_room() {
   std::size_t held = 0;
-  for (const auto& piece : heap_) held += static_cast<std::size_t>(piece.stretch.last - piece.stretch.first);
-  if (held > too_many_chords_) drop_shortest();
+  for (const auto& piece : heap_) held += static_cast<std::size_t>(piece.length);
+  if (held > too_many_chords_ / 4 * 3) drop_shortest();
   drop_dead_chords();
-  return true;
 }
 
 /// Keeps the longest pieces, half as many chords as would be too many.
@@ -70,37 +78,35 @@ void Candidates::drop_shortest() {
   std::sort(heap_.begin(), heap_.end(), [](const Piece& a, const Piece& b) { return b < a; });
   auto room = static_cast<std::int64_t>(too_many_chords_ / 2);
   std::size_t kept = 0;
-  for (; kept < heap_.size() && room > 0; ++kept) room -= heap_[kept].stretch.last - heap_[kept].stretch.first;
-  heap_.resize(kept);
+  for (; kept < heap_.size() && room > 0; ++kept) room -= heap_[kept].length;
+  heap_.erase(heap_.begin() + static_cast<std::ptrdiff_t>(kept), heap_.end());
 }
 
 void Candidates::drop_dead_chords() {
-  std::sort(heap_.begin(), heap_.end(),
-            [](const Piece& a, const Piece& b) { return a.stretch.first < b.stretch.first; });
+  std::sort(heap_.begin(), heap_.end(), [](const Piece& a, const Piece& b) { return a.first < b.first; });
   std::vector<Trajectory> kept;
   std::int64_t read = 0, written = 0, shift = 0;  // chords up to `read` are where they shall be, or dropped
   std::int32_t trajectory = -1;
   for (auto& piece : heap_) {
-    const auto& whole = trajectories_[piece.trajectory];
-    const auto first = std::max(piece.stretch.first - 1, whole.stretch.first);
-    const auto last = std::min(piece.stretch.last + 1, whole.stretch.last);
-    if (piece.trajectory != trajectory || first > read) {
+    const auto& whole = trajectories_[piece.trajectory()];
+    const auto first = std::max(piece.stretch().first - 1, whole.stretch().first);
+    const auto last = std::min(piece.stretch().last + 1, whole.stretch().last);
+    if (piece.trajectory() != trajectory || first > read) {
       shift = written - first;
-      kept.push_back({{written, written}, whole.ends, whole.bonus});
-      trajectory = piece.trajectory;
+      kept.push_back({{written, written}, whole.ends, whole.hugs});
+      trajectory = piece.trajectory();
       read = first;
     }
     std::move(chords_.begin() + read, chords_.begin() + last, chords_.begin() + written);
+    kept.back().length += static_cast<std::int32_t>(last - read);
     written += last - read;
     read = last;
-    kept.back().stretch.last = written;
-    piece.stretch = {piece.stretch.first + shift, piece.stretch.last + shift};
-    piece.trajectory = static_cast<std::int32_t>(kept.size()) - 1;
+    piece.first += shift;
+    piece.set_trajectory(static_cast<std::int32_t>(kept.size()) - 1);
   }
   chords_.resize(written);
-  trajectories_ = std::move(kept);
-  most_chords_ = std::max<std::size_t>(most_chords_, written + written / 2);
-  chords_.reserve(most_chords_);
+  trajectories_.assign(kept.begin(), kept.end());
+  most_chords_ = std::max(most_chords_, static_cast<std::size_t>((1 + growth) * static_cast<double>(written)));
   std::make_heap(heap_.begin(), heap_.end());
 }
 

@@ -4,17 +4,23 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "detail/trajectories.hpp"
 
 namespace pectinate::detail {
 
+/// What makes pieces come before others of the same length; factors of the length.
+struct Bonus {
+  double closed, hugging;
+};
+
 /// Trajectories, stored as chords, and a heap of the pieces of them that may still be placed, longest first.
 class Candidates {
  public:
   /// Pieces shorter than `minimum_length` are none.
-  Candidates(std::size_t triangle_count, double minimum_length);
+  Candidates(std::size_t triangle_count, double minimum_length, const Bonus& bonus);
 
   /// All chords, one trajectory after the other; who adds some makes a trajectory of them.
   Chords& chords() { return chords_; }
@@ -37,17 +43,25 @@ class Candidates {
 
   /// Where trajectories run on and on beside one another they might take any amount of memory.
   bool are_too_many() const { return chords_.size() > too_many_chords_; }
-  /// Where little room for more chords is left, drops those that no piece holds, except where pieces were cut off; and
-  /// where even so they are too many, the shortest pieces. Did it? Then trajectories have other numbers and chords
-  /// other places; the order of pieces stays.
-  bool make_room();
+  /// Are there many more chords than were left last time?
+  bool needs_room() const { return are_too_many() || chords_.size() > most_chords_; }
+  /// Drops chords that no piece holds, except where pieces were cut off; and where even so they are nearly too many,
+  /// the shortest pieces. Then trajectories have other numbers and chords other places; the order of pieces stays.
+  void make_room();
+  /// Takes all pieces out.
+  std::vector<Piece> take_pieces() { return std::exchange(heap_, {}); }
 
  private:
   void prefetch_next() const;
+  double key(double length, std::int32_t trajectory) const {
+    const auto& whole = trajectories_[trajectory];
+    return length * (whole.is_closed() ? bonus_.closed : 1) * (whole.hugs ? bonus_.hugging : 1);
+  }
   void drop_shortest();
   void drop_dead_chords();
 
   double minimum_length_;
+  Bonus bonus_;
   Chords chords_;
   std::vector<Trajectory> trajectories_;
   std::vector<Piece> heap_;

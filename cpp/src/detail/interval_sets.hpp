@@ -16,7 +16,9 @@ namespace pectinate::detail {
 /// Each item has a summary in sixteenths of [0, 1] that answers most questions.
 class IntervalSets {
  public:
-  explicit IntervalSets(std::size_t count) : items_(count) {}
+  explicit IntervalSets(std::size_t count) : items_(count) {
+    nodes_.reserve(most_reserved * count);  // memory that is not written to costs nothing
+  }
 
   bool is_empty(std::int32_t item) const { return items_[item].first == empty; }
   bool is_full(std::int32_t item) const { return items_[item].first == full; }
@@ -50,6 +52,7 @@ class IntervalSets {
 
  private:
   static constexpr std::int32_t empty = -1, full = -2;
+  static constexpr std::size_t most_reserved = 2;  // nodes an item
   static constexpr int cells = 16;
   struct Item {
     std::int32_t first = empty;            // node, empty or full

@@ -18,8 +18,9 @@
 namespace pectinate::detail {
 namespace {
 
-/// Prefers lines that hug a placed one to others of about the same length.
-constexpr double hugging_bonus = 1.05;
+/// Lines that hug a placed one are preferred to others of about the same length, where streamlines need more room to
+/// start than to go on only half as much.
+constexpr double hugging_bonus = 1.05, hugging_bonus_with_room = 1.03;
 /// Closed lines come before all open ones: one that winds onto a closed curve would take its place, whatever its
 /// length.
 constexpr double closed_bonus = 1e6;
@@ -48,7 +49,8 @@ class LongestFirst {
         close_loops_(rules.close_loops),
         occupancy_(occupancy),
         place_(place),
-        candidates_(crossings_.size(), rules.minimum_length),
+        candidates_(crossings_.size(), rules.minimum_length,
+                    {closed_bonus, occupancy.has_seed_sets() ? hugging_bonus_with_room : hugging_bonus}),
         hugged_(crossings_.size(), 0) {}
 
   bool run(const std::function<bool()>& go_on) {
@@ -111,21 +113,22 @@ class LongestFirst {
   }
 
   /// Traces both ways from a chord and stores the trajectory as a candidate.
-  Trajectory add_trajectory(std::int32_t triangle, double coordinate, bool mind_others, double bonus) {
+  Trajectory add_trajectory(std::int32_t triangle, double coordinate, bool mind_others, bool hugs) {
     const auto& crossings = crossings_[triangle];
     const Chord start = make_chord(triangle, coordinate, true);
     visited_.start(crossings_.size());
     visited_.revisit(triangle, coordinate, crossings.width, 0);
     scratch_.clear();
-    Trajectory trajectory{{std::ssize(chords_), 0}, {}, bonus};
-    trajectory.ends[0] = walk(start, exit_role(crossings, low_high, coordinate), mind_others, scratch_);
+    const auto first = std::ssize(chords_);
+    std::array<StopReason, 2> ends;
+    ends[0] = walk(start, exit_role(crossings, low_high, coordinate), mind_others, scratch_);
     // Traced away from the start: turned round, each chord leaves through the side that it was entered through.
     for (auto chord = scratch_.rbegin(); chord != scratch_.rend(); ++chord) {
       chords_.push_back({chord->coordinate, chord->length, chord->code ^ 1});
     }
     chords_.push_back(start);
-    trajectory.ends[1] = walk(start, low_high, mind_others, chords_);
-    trajectory.stretch.last = std::ssize(chords_);
+    ends[1] = walk(start, low_high, mind_others, chords_);
+    const Trajectory trajectory({first, std::ssize(chords_)}, ends, hugs);
     candidates_.add(trajectory);
     if (close_loops_) add_closed(trajectory);
     return trajectory;
@@ -133,17 +136,17 @@ class LongestFirst {
 
   /// Stores the closed curves that a trajectory winds onto.
   void add_closed(const Trajectory& trajectory) {
-    const auto [first, last] = trajectory.stretch;
+    const auto [first, last] = trajectory.stretch();
     Chord starts[] = {chords_[first], chords_[last - 1]};
     starts[0].code ^= 1;  // backwards
     for (const int end : {0, 1}) {
       if (trajectory.ends[end] != StopReason::near_itself) continue;
-      add_closed(closed_orbit(sheet_, starts[end], last - first), trajectory.bonus);
+      add_closed(closed_orbit(sheet_, starts[end], last - first), trajectory.hugs);
     }
   }
 
   /// Stores a closed curve as a candidate, if it is free and not too near itself.
-  void add_closed(const Chords& orbit, double bonus) {
+  void add_closed(const Chords& orbit, bool hugs) {
     if (orbit.empty() || std::ranges::any_of(orbit, [&](const Chord& chord) { return is_stopped(chord); })) return;
     const Stretch stretch{std::ssize(chords_), std::ssize(chords_) + std::ssize(orbit)};
     chords_.insert(chords_.end(), orbit.begin(), orbit.end());
@@ -151,7 +154,7 @@ class LongestFirst {
     double distance = 0;
     for (const auto& chord : orbit) distance = std::max(distance, separation(chord.triangle()));
     if (keeps_from_itself(polyline_.points, distance)) {
-      candidates_.add({stretch, {StopReason::closed, StopReason::closed}, closed_bonus * bonus});
+      candidates_.add({stretch, {StopReason::closed, StopReason::closed}, hugs});
     } else {
       chords_.resize(static_cast<std::size_t>(stretch.first));
     }
@@ -173,7 +176,7 @@ class LongestFirst {
         seeds.pop_back();
         if (served[t] || occupancy_.stopped().is_full(t)) continue;
         if (!go_on()) return false;
-        const auto stretch = add_trajectory(t, 0.5, false, 1).stretch;
+        const auto stretch = add_trajectory(t, 0.5, false, false).stretch();
         std::vector<std::int32_t> crossed;
         for (const auto& chord : candidates_.chords_of(stretch)) {
           if (!is_local && has_been_crossed[chord.triangle()]) continue;  // all around it is served
@@ -198,8 +201,12 @@ class LongestFirst {
     return sum / static_cast<double>(mesh_.edge_lengths().size());
   }
 
+  /// Drops what is of no use any more, where it takes much room.
   void make_room() {
-    if (candidates_.make_room()) self_free_parts_.forget();
+    if (!candidates_.needs_room()) return;
+    if (candidates_.are_too_many()) look_again_at_all();
+    candidates_.make_room();
+    self_free_parts_.forget();
   }
 
   /// Candidates that lie just outside the band of the streamline placed last.
@@ -215,7 +222,7 @@ class LongestFirst {
         for (const double coordinate : {low - gap, high + gap}) {
           if (!(coordinate > least_position && coordinate < 1 - least_position)) continue;
           if (occupancy_.unseeded().contains(t, coordinate)) continue;
-          const auto stretch = add_trajectory(t, coordinate, true, hugging_bonus).stretch;
+          const auto stretch = add_trajectory(t, coordinate, true, true).stretch();
           for (auto i = stretch.first; i < stretch.last; ++i) hugged_[chords_[i].triangle()] = round_;
         }
       }
@@ -247,7 +254,7 @@ class LongestFirst {
         const double middle = (gap.low + gap.high) / 2;
         if (occupancy_.unseeded().contains(t, middle)) continue;
         const auto before = candidates_.piece_count();
-        add_trajectory(t, middle, true, 1);
+        add_trajectory(t, middle, true, false);
         if (candidates_.piece_count() == before) occupancy_.retire_seed(t, gap);
       }
     }
@@ -261,18 +268,30 @@ class LongestFirst {
     while (candidates_.piece_count() > 0) {
       if (!go_on()) return false;
       const auto piece = candidates_.pop();
-      if (close_loops_ && candidates_.trajectory(piece.trajectory).is_closed()) {
+      if (close_loops_ && candidates_.trajectory(piece.trajectory()).is_closed()) {
         place_closed(piece);
       } else if (const auto best = longest_free(piece)) {
         const auto& [stretch, length] = *best;
-        if (candidates_.is_first(length, piece.trajectory)) {
+        if (candidates_.is_first(length, piece.trajectory())) {
           place_best(stretch, piece);
         } else {
-          candidates_.push(stretch, length, piece.trajectory, piece.is_self_free);
+          candidates_.push(stretch, length, piece.trajectory(), piece.is_self_free());
         }
       }
     }
     return true;
+  }
+
+  /// Cuts off from all pieces what is not free any more.
+  void look_again_at_all() {
+    for (const auto& piece : candidates_.take_pieces()) {
+      if (candidates_.trajectory(piece.trajectory()).is_closed()) {
+        candidates_.push(piece.stretch(), candidates_.length(piece.stretch()), piece.trajectory(),
+                         piece.is_self_free());
+      } else if (const auto best = longest_free(piece)) {
+        candidates_.push(best->stretch, best->length, piece.trajectory(), piece.is_self_free());
+      }
+    }
   }
 
   struct FreeStretch {
@@ -283,7 +302,7 @@ class LongestFirst {
   /// The longest free stretch of a piece; the others go back to the heap.
   std::optional<FreeStretch> longest_free(const Piece& piece) {
     std::optional<FreeStretch> best;
-    for (auto i = piece.stretch.first; i < piece.stretch.last;) {
+    for (auto i = piece.first; i < piece.stretch().last;) {
       if (is_stopped(chords_[i])) {
         ++i;
         continue;
@@ -291,16 +310,16 @@ class LongestFirst {
       Stretch run{i, i};
       double run_length = 0;
       bool can_start = false;
-      for (; run.last < piece.stretch.last && !is_stopped(chords_[run.last]); ++run.last) {
+      for (; run.last < piece.stretch().last && !is_stopped(chords_[run.last]); ++run.last) {
         run_length += chords_[run.last].length;
         can_start = can_start || !occupancy_.has_seed_sets() || !is_unseeded(chords_[run.last]);
       }
       i = run.last;
       if (!can_start && !is_long(run_length, run)) continue;
       if (best && run_length <= best->length) {
-        candidates_.push(run, run_length, piece.trajectory, piece.is_self_free);
+        candidates_.push(run, run_length, piece.trajectory(), piece.is_self_free());
       } else {
-        if (best) candidates_.push(best->stretch, best->length, piece.trajectory, piece.is_self_free);
+        if (best) candidates_.push(best->stretch, best->length, piece.trajectory(), piece.is_self_free());
         best = {run, run_length};
       }
     }
@@ -322,33 +341,33 @@ class LongestFirst {
   void place_best(const Stretch& stretch, const Piece& piece) {
     make_polyline(stretch);
     auto part = stretch;
-    if (!piece.is_self_free) {  // where the distance varies, it is that at the beginning
+    if (!piece.is_self_free()) {  // where the distance varies, it is that at the beginning
       const double distance = separation(chords_[stretch.first].triangle());
-      part = self_free_parts_.longest(stretch, piece.trajectory, polyline_.points, distance);
+      part = self_free_parts_.longest(stretch, piece.trajectory(), polyline_.points, distance);
     }
     if (part.last - part.first < stretch.last - stretch.first) {
       const Stretch before{stretch.first, part.first}, behind{part.last, stretch.last};
-      candidates_.push(before, candidates_.length(before), piece.trajectory);
-      candidates_.push(behind, candidates_.length(behind), piece.trajectory);
+      candidates_.push(before, candidates_.length(before), piece.trajectory());
+      candidates_.push(behind, candidates_.length(behind), piece.trajectory());
       const double part_length = candidates_.length(part);
-      if (!candidates_.is_first(part_length, piece.trajectory)) {
+      if (!candidates_.is_first(part_length, piece.trajectory())) {
         const bool stays_so = separation_ > 0;
-        candidates_.push(part, part_length, piece.trajectory, stays_so);
+        candidates_.push(part, part_length, piece.trajectory(), stays_so);
         return;
       }
       make_polyline(part);
     }
-    place_polyline(part, piece.trajectory);
+    place_polyline(part, piece.trajectory());
   }
 
   /// Places a closed line if all of it is still free.
   void place_closed(const Piece& piece) {
-    const auto chords = candidates_.chords_of(piece.stretch);
+    const auto chords = candidates_.chords_of(piece.stretch());
     if (std::ranges::any_of(chords, [&](const Chord& chord) { return is_stopped(chord); })) return;
     const bool can_start = !std::ranges::all_of(chords, [&](const Chord& chord) { return is_unseeded(chord); });
-    if (!can_start && !is_long(candidates_.length(piece.stretch), piece.stretch)) return;
-    make_polyline(piece.stretch);
-    place_polyline(piece.stretch, piece.trajectory);
+    if (!can_start && !is_long(candidates_.length(piece.stretch()), piece.stretch())) return;
+    make_polyline(piece.stretch());
+    place_polyline(piece.stretch(), piece.trajectory());
   }
 
   /// Places the stretch whose polyline is at hand.
@@ -391,8 +410,8 @@ class LongestFirst {
       const auto& chord = chords_[outside];
       return is_stopped(chord) ? occupancy_.stop_reason(chord.triangle(), chord.coordinate) : StopReason::near_itself;
     };
-    line.stop_reasons[0] = stretch.first == whole.stretch.first ? whole.ends[0] : reason_at(stretch.first - 1);
-    line.stop_reasons[1] = stretch.last == whole.stretch.last ? whole.ends[1] : reason_at(stretch.last);
+    line.stop_reasons[0] = stretch.first == whole.first ? whole.ends[0] : reason_at(stretch.first - 1);
+    line.stop_reasons[1] = stretch.last == whole.stretch().last ? whole.ends[1] : reason_at(stretch.last);
     return line;
   }
 

@@ -26,25 +26,42 @@ struct Stretch {
   std::int64_t first, last;
 };
 
-/// A curve of the field, from stop to stop.
+/// A curve of the field, from stop to stop. There may be more than triangles: it is small.
 struct Trajectory {
-  Stretch stretch;
+  std::int64_t first;
+  std::int32_t length;  // in chords
   std::array<StopReason, 2> ends;
-  double bonus;
+  bool hugs;  ///< a placed line
 
+  Trajectory(const Stretch& stretch, const std::array<StopReason, 2>& end_reasons, bool does_hug)
+      : first(stretch.first),
+        length(static_cast<std::int32_t>(stretch.last - stretch.first)),
+        ends(end_reasons),
+        hugs(does_hug) {}
+
+  Stretch stretch() const { return {first, first + length}; }
   bool is_closed() const { return ends[0] == StopReason::closed; }
 };
 
 /// A stretch of a trajectory under the length that it had when it was last looked at; it only ever gets shorter.
 struct Piece {
   double key;
-  Stretch stretch;
-  std::int32_t trajectory;
-  bool is_self_free;  ///< known to keep criterion 5
+  std::int64_t first;
+  std::int32_t length;  // in chords
+  std::uint32_t code;   // 2 * trajectory, + 1 if it is known to keep criterion 5
 
-  bool operator<(const Piece& other) const {
-    return key != other.key ? key < other.key : stretch.first > other.stretch.first;
-  }
+  Piece(double heap_key, const Stretch& stretch, std::int32_t trajectory, bool is_self_free)
+      : key(heap_key),
+        first(stretch.first),
+        length(static_cast<std::int32_t>(stretch.last - stretch.first)),
+        code(2 * static_cast<std::uint32_t>(trajectory) + is_self_free) {}
+
+  Stretch stretch() const { return {first, first + length}; }
+  std::int32_t trajectory() const { return static_cast<std::int32_t>(code >> 1); }
+  bool is_self_free() const { return code & 1; }
+  void set_trajectory(std::int32_t trajectory) { code = 2 * static_cast<std::uint32_t>(trajectory) + is_self_free(); }
+
+  bool operator<(const Piece& other) const { return key != other.key ? key < other.key : first > other.first; }
 };
 
 }  // namespace pectinate::detail
