@@ -9,6 +9,7 @@
 
 #include "detail/chord_occupancy.hpp"
 #include "detail/edge_point.hpp"
+#include "detail/line_ends.hpp"
 #include "detail/longest_first.hpp"
 #include "detail/number_text.hpp"
 #include "detail/random.hpp"
@@ -341,11 +342,16 @@ double place_by_contest(const Ground& ground, const PlacementOptions& options, P
 /// The longest first. Returns the coverage.
 double place_longest(const Ground& ground, const PlacementOptions& options, Progress& progress, Placement& placement) {
   detail::ChordOccupancy occupancy(ground.mesh, ground.tracer, clearance_of(options), ground.singular);
+  std::vector<detail::ChordsAhead> ahead;
   const bool complete = detail::place_longest_first(
       ground.mesh, ground.tracer, {options.minimum_length, options.close_loops}, occupancy,
-      [&](const auto& line) { append(line, placement); },
+      [&](const auto& line) {
+        append(line, placement);
+        ahead.push_back(line.ahead);
+      },
       [&] { return !progress.is_cancelled([&] { return occupancy.coverage(); }); });
   if (!complete) placement.end = PlacementEnd::cancelled;
+  detail::extend_ends(ground.tracer, options.test_distance, ahead, placement);
   return occupancy.coverage();
 }
 

@@ -165,7 +165,8 @@ class Placement:
     model, mesh, field
         What the streamlines lie on.
     points
-        (N, 3) float64, mm: all streamlines, one after the other. Each lies on an edge.
+        (N, 3) float64, mm: all streamlines, one after the other. Each lies on an edge, but for ends of method
+        "longest" that stop near others: those are where the others are d_sep away, in the midst of triangles.
     offsets
         (n + 1,) int64: streamline i owns points[offsets[i]:offsets[i + 1]].
     segment_triangles

@@ -254,21 +254,33 @@ TEST_CASE("exact placement: oblique parallel lines are d_sep apart and whole") {
   }
 }
 
-TEST_CASE("exact placement: a line ends at others only where they are near") {
+/// From an end of a streamline to the nearest of the others, and of its own parts more than 2 d_sep away along it.
+double distance_to_others(const std::vector<Piece>& segments, const Placement& placement, std::size_t line, int end) {
+  const auto p = end == 0 ? placement.offsets[line] : placement.offsets[line + 1] - 1;
+  const Vector point = detail::vector(placement.points[p]);
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& segment : segments) {
+    const double between = end == 0 ? segment.arc : placement.lengths[line] - segment.arc_end;
+    if (segment.line == line && between <= 2 * segment.separation_distance) continue;
+    least = std::min(least, detail::distance_to_segment(point, segment.start, segment.end));
+  }
+  return least;
+}
+
+TEST_CASE("exact placement: a line ends at others where they are d_sep away, in the midst of triangles") {
   const auto mesh = jittered_grid(12, 9).mesh();
   for (const auto& hard : hard_fields) {
     CAPTURE(hard.name);
-    const auto placement = checked(mesh, make_field(mesh, hard), with(0.4));
-    const auto lines = polylines(placement);
-    for (std::size_t i = 0; i < lines.size(); ++i) {
-      for (const int end : {0, 1}) {
-        if (placement.stop_reasons[i][end] != StopReason::near_other) continue;
-        // The next chord, which is at most as long as the longest edge, would be too near.
-        double least = std::numeric_limits<double>::infinity();
-        for (std::size_t j = 0; j < i; ++j) {
-          least = std::min(least, distance_to_polyline(end == 0 ? lines[i].front() : lines[i].back(), lines[j]));
+    for (const double separation : {0.4, 1.7}) {
+      const auto placement = checked(mesh, make_field(mesh, hard), with(separation));
+      const auto segments = segments_of(placement);
+      for (std::size_t i = 0; i < placement.lengths.size(); ++i) {
+        for (const int end : {0, 1}) {
+          if (placement.stop_reasons[i][end] != StopReason::near_other) continue;
+          const double distance = distance_to_others(segments, placement, i, end) / separation;
+          CHECK(distance >= 1);
+          CHECK(distance <= 1 + 2e-3);
         }
-        CHECK(least < 0.4 + 2.5);
       }
     }
   }
@@ -285,7 +297,8 @@ TEST_CASE("exact placement: lines stop at borders, there alone, and say so") {
           const auto p = end == 0 ? placement.offsets[i] : placement.offsets[i + 1] - 1;
           const auto& weights = placement.barycentric[p];
           const auto opposite = static_cast<int>(std::find(weights.begin(), weights.end(), 0.0) - weights.begin());
-          const bool is_border = mesh.neighbour(placement.point_triangles[p], (opposite + 1) % 3).triangle < 0;
+          const bool is_border =
+              opposite < 3 && mesh.neighbour(placement.point_triangles[p], (opposite + 1) % 3).triangle < 0;
           CHECK((placement.stop_reasons[i][end] == StopReason::boundary) == is_border);
         }
       }

@@ -287,7 +287,7 @@ TEST_CASE("placement: cancelled, it keeps the lines placed so far") {
   const auto mesh = sphere(5, 10).mesh();
   const auto field = smooth_field(mesh);
   for (const auto way : {Way{PlacementMethod::distance, edge_mask}, Way{PlacementMethod::random, exact}, default_way}) {
-    auto options = with(0.05, way, 200);
+    auto options = with(0.015, way, 200);
     int calls = 0;
     std::vector<double> coverages;
     const auto stop_at = [&](int last) {
@@ -305,9 +305,10 @@ TEST_CASE("placement: cancelled, it keeps the lines placed so far") {
     CHECK(coverages.front() == 0);
     CHECK(part.end == PlacementEnd::cancelled);
     REQUIRE(!part.lengths.empty());
-    const auto common = std::min(part.lengths.size(), whole.lengths.size());
-    CHECK(std::equal(part.lengths.begin(), part.lengths.begin() + common, whole.lengths.begin()));
-    CHECK(std::equal(part.points.begin(), part.points.begin() + part.offsets[common], whole.points.begin()));
+    const auto lines = as_placed(part), all_lines = as_placed(whole);
+    const auto common = std::min(lines.lengths.size(), all_lines.lengths.size());
+    CHECK(std::equal(lines.lengths.begin(), lines.lengths.begin() + common, all_lines.lengths.begin()));
+    CHECK(std::equal(lines.points.begin(), lines.points.begin() + lines.offsets[common], all_lines.points.begin()));
     check_lines(mesh, field, part);
     check_points(mesh, part);
     check_statistics(mesh, field, part);

@@ -410,6 +410,12 @@ def test_any_soup_is_filled_or_refused(data: st.DataObject) -> None:
     assert trimesh.Trimesh(tubes.vertices, tubes.triangles, process=False).is_watertight
 
 
+def points_on_edges(placement: Placement, count: int) -> NDArray[np.float64]:
+    """Return the points of the first `count` streamlines without the ends in the midst of triangles."""
+    last = placement.offsets[count]
+    return placement.points[:last][(placement.barycentric[:last] == 0).any(axis=1)]
+
+
 @pytest.mark.parametrize("way", WAYS, ids=name_of)
 def test_progress_is_told_and_can_stop(way: dict[str, Any]) -> None:
     model = model_of(sphere(5, radius=10))  # work for more than the calls below, which are 50 ms apart
@@ -422,16 +428,16 @@ def test_progress_is_told_and_can_stop(way: dict[str, Any]) -> None:
 
         return stop
 
-    longer = place_streamlines(model, separation_distance=0.05, seed_count=200, progress=stop_at(4), **way)
+    longer = place_streamlines(model, separation_distance=0.015, seed_count=200, progress=stop_at(4), **way)
     told.clear()
-    part = place_streamlines(model, separation_distance=0.05, seed_count=200, progress=stop_at(3), **way)
+    part = place_streamlines(model, separation_distance=0.015, seed_count=200, progress=stop_at(3), **way)
     assert part.end == "cancelled"
     assert len(told) == 3
     assert told == sorted(told)
     assert told[0] == 0
     assert len(part) > 0
     count = min(len(part), len(longer))
-    np.testing.assert_array_equal(part.points[: part.offsets[count]], longer.points[: longer.offsets[count]])
+    np.testing.assert_array_equal(points_on_edges(part, count), points_on_edges(longer, count))
     check_arrays(part)
     check_statistics(part)
 

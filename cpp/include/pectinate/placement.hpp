@@ -66,7 +66,9 @@ struct PlacementOptions {
 };
 
 /// Evenly spaced streamlines, one after the other in the order of placement. Streamline i owns the points
-/// [offsets[i], offsets[i + 1]) and the segments [offsets[i] - i, offsets[i + 1] - i - 1).
+/// [offsets[i], offsets[i + 1]) and the segments [offsets[i] - i, offsets[i + 1] - i - 1). Points lie on edges, but for
+/// ends of method `longest` that stop near others: those are where the others are d_sep away, in the midst of
+/// triangles.
 struct Placement {
   std::vector<Vec3> points;
   std::vector<std::int64_t> offsets;            ///< streamline count + 1

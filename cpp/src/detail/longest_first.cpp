@@ -9,6 +9,7 @@
 #include "detail/candidates.hpp"
 #include "detail/chord_sides.hpp"
 #include "detail/closed_orbit.hpp"
+#include "detail/line_ends.hpp"
 #include "detail/self_free_parts.hpp"
 #include "detail/sheet.hpp"
 #include "detail/trajectories.hpp"
@@ -412,6 +413,11 @@ class LongestFirst {
     };
     line.stop_reasons[0] = stretch.first == whole.first ? whole.ends[0] : reason_at(stretch.first - 1);
     line.stop_reasons[1] = stretch.last == whole.stretch().last ? whole.ends[1] : reason_at(stretch.last);
+    Chord outwards[] = {chords_[stretch.first], chords_[stretch.last - 1]};
+    outwards[0].code ^= 1;
+    for (const int end : {0, 1}) {
+      if (line.stop_reasons[end] == StopReason::near_other) line.ahead[end] = chord_ahead(sheet_, outwards[end]);
+    }
     return line;
   }
 

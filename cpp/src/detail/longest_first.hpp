@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "detail/chord_occupancy.hpp"
+#include "detail/trajectories.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/surface_mesh.hpp"
 #include "pectinate/tracing.hpp"
@@ -20,6 +21,7 @@ struct PlacedLine {
   std::vector<Vec3> barycentric;        ///< per point, in the triangle of the segment after it, or of the last
   double length = 0;
   std::array<StopReason, 2> stop_reasons{};
+  ChordsAhead ahead;
 };
 
 /// Which lines there may be.

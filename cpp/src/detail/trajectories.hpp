@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "detail/large_array.hpp"
 #include "pectinate/tracing.hpp"
@@ -20,6 +21,10 @@ struct Chord {
 };
 
 using Chords = LargeArray<Chord>;
+
+/// At the first and the last point of a line, the chord that it does not take because another is near; it runs away
+/// from the line.
+using ChordsAhead = std::array<std::optional<Chord>, 2>;
 
 /// A stretch [first, last) of the stored chords.
 struct Stretch {

@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: MIT
+#include "detail/line_ends.hpp"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "detail/capsule.hpp"
+#include "detail/chord_sides.hpp"
+#include "detail/segment_grid.hpp"
+
+namespace pectinate::detail {
+namespace {
+
+/// Keeps rounding on the safe side; in separation distances.
+constexpr double guard = 2e-6;
+/// Shorter pieces are not worth a point; in separation distances.
+constexpr double least_extension = 1e-3;
+
+/// What a streamline takes of the chord ahead.
+struct Extension {
+  std::size_t line;
+  int end;
+  Chord chord;
+  Vector start, far;  // of the chord
+  double share = 0;   // of it, from `start`; none yet
+
+  Vector point() const { return start + share * (far - start); }
+};
+
+class EndExtender {
+ public:
+  EndExtender(const StreamlineTracer& tracer, double clearance, Placement& placement)
+      : tracer_(tracer), sheet_(tracer.sheet()), clearance_(clearance), placement_(placement), grid_(reach()) {}
+
+  void run(const std::vector<ChordsAhead>& ahead) {
+    for (std::size_t line = 0; line < ahead.size(); ++line) {
+      for (const int end : {0, 1}) {
+        if (!ahead[line][end]) continue;
+        const auto& chord = *ahead[line][end];
+        extensions_.push_back({line, end, chord, point_on(sheet_, chord, entry_side(sheet_, chord)),
+                               point_on(sheet_, chord, exit_side(sheet_, chord))});
+      }
+    }
+    fill_grid();
+    for (std::size_t i = 0; i < extensions_.size(); ++i) extensions_[i].share = free_share(i);
+    std::erase_if(extensions_, [](const auto& extension) { return extension.share == 0; });
+    store();
+  }
+
+ private:
+  double reach() const {
+    const auto& options = tracer_.options();
+    const auto& varying = options.separation_distances;
+    return (1 + guard) * (varying.empty() ? options.separation_distance : *std::ranges::max_element(varying));
+  }
+
+  // Segments have the numbers of their first points, extensions come after all points.
+  std::int64_t point_count() const { return std::ssize(placement_.points); }
+  Vector point(std::int64_t index) const { return vector(placement_.points[index]); }
+  std::int64_t first_point(std::size_t line) const { return placement_.offsets[line]; }
+  std::int64_t last_point(std::size_t line) const { return placement_.offsets[line + 1] - 1; }
+  std::int32_t mesh_triangle(const Extension& extension) const {
+    return sheet_.mesh_triangles[extension.chord.triangle()];
+  }
+
+  void fill_grid() {
+    for (std::size_t line = 0; line + 1 < placement_.offsets.size(); ++line) {
+      for (auto i = first_point(line); i < last_point(line); ++i) {
+        grid_.add(i, point(i), point(i + 1));
+        longest_ = std::max(longest_, (point(i + 1) - point(i)).norm());
+      }
+    }
+    for (std::int64_t i = 0; i < std::ssize(extensions_); ++i) {
+      grid_.add(point_count() + i, extensions_[i].start, extensions_[i].far);
+    }
+    grid_.finish();
+  }
+
+  /// How much of its chord an extension may take.
+  double free_share(std::size_t index) {
+    const auto& extension = extensions_[index];
+    const Vector along = extension.far - extension.start;
+    const double length = along.norm(), far = length + longest_ + reach();
+    const double least = least_extension * tracer_.separation_distance(mesh_triangle(extension)) / length;
+    double share = 1;
+    bool is_cut = false;
+    const auto keep_from = [&](const Vector& start, const Vector& end, double distance) {
+      const auto inside = intersect({start, end, distance}, extension.start, along);
+      if (!inside) return;
+      share = std::min(share, inside->low);
+      is_cut = true;
+    };
+    grid_.visit_near(extension.start, extension.far, [&](std::int64_t segment) {
+      if (share < least) return;
+      if (segment >= point_count()) {
+        const auto& other = extensions_[segment - point_count()];
+        if (other.share == 0 || other.line == extension.line) return;
+        const auto& placed_first = other.line < extension.line ? other : extension;
+        keep_from(other.start, other.point(), stop_distance(mesh_triangle(placed_first)));
+      } else if (segment < first_point(extension.line) || segment > last_point(extension.line)) {
+        const Vector start = point(segment);
+        if ((start - extension.start).squaredNorm() > far * far) return;
+        const bool was_first = segment < first_point(extension.line);
+        const auto triangle = was_first ? placement_.point_triangles[segment] : mesh_triangle(extension);
+        keep_from(start, point(segment + 1), stop_distance(triangle));
+      }
+    });
+    if (!is_cut) return 0;  // whatever it was that stopped it, it still does
+    visit_itself(index, keep_from);
+    return share < least ? 0 : share;
+  }
+
+  /// How far those placed later keep from a streamline in a triangle.
+  double stop_distance(std::int32_t triangle) const {
+    return clearance_ * (1 + guard) * tracer_.separation_distance(triangle);
+  }
+
+  /// Calls visit(start, end, d_sep) for all segments of the streamline itself with more than 2 d_sep of it between
+  /// (criterion 5).
+  template <class Visit>
+  void visit_itself(std::size_t index, const Visit& visit) const {
+    const auto& extension = extensions_[index];
+    const auto first = first_point(extension.line), last = last_point(extension.line);
+    const double separation = tracer_.separation_distance(placement_.point_triangles[first]) * (1 + guard);
+    double between = 0;
+    const auto pass = [&](const Vector& start, const Vector& end) {
+      if (between > 2 * separation) visit(start, end, separation);
+      between += (end - start).norm();
+    };
+    if (extension.end == 0) {
+      for (auto i = first; i < last; ++i) pass(point(i), point(i + 1));
+    } else {
+      for (auto i = last; i > first; --i) pass(point(i), point(i - 1));
+      const auto* other = index > 0 ? &extensions_[index - 1] : nullptr;
+      if (other && other->line == extension.line && other->share > 0) pass(other->start, other->point());
+    }
+  }
+
+  /// Puts the new points and segments where they belong.
+  void store() {
+    for (const auto& extension : extensions_) {
+      placement_.lengths[extension.line] += (extension.point() - extension.start).norm();
+      if (extension.end == 0) continue;
+      const auto joint = last_point(extension.line);  // points lie in the triangles of the segments after them
+      placement_.point_triangles[joint] = mesh_triangle(extension);
+      placement_.barycentric[joint] = weights(extension, 0);
+    }
+    const auto points_before = [&](std::size_t line) { return placement_.offsets[line]; };
+    const auto segments_before = [&](std::size_t line) {
+      return placement_.offsets[line] - static_cast<std::int64_t>(line);
+    };
+    insert(placement_.points, points_before, [&](const Extension& e) { return vec3(e.point()); });
+    insert(placement_.barycentric, points_before, [&](const Extension& e) { return weights(e, e.share); });
+    insert(placement_.point_triangles, points_before, [&](const Extension& e) { return mesh_triangle(e); });
+    insert(placement_.segment_triangles, segments_before, [&](const Extension& e) { return mesh_triangle(e); });
+    std::vector<std::int64_t> added(placement_.offsets.size(), 0);
+    for (const auto& extension : extensions_) added[extension.line + 1] += 1;
+    for (std::size_t line = 1; line < added.size(); ++line) {
+      added[line] += added[line - 1];
+      placement_.offsets[line] += added[line];
+      placement_.seed_points[line - 1] = (placement_.offsets[line - 1] + placement_.offsets[line]) / 2;
+    }
+  }
+
+  Vec3 weights(const Extension& extension, double share) const {
+    const auto& chord = extension.chord;
+    const Vec3 start = weights_on_side(sheet_, chord, entry_side(sheet_, chord));
+    const Vec3 far = weights_on_side(sheet_, chord, exit_side(sheet_, chord));
+    return vec3((1 - share) * vector(start) + share * vector(far));
+  }
+
+  /// Inserts a value for each extension before or behind those of its line; in place, from the back.
+  template <class T, class Before, class Value>
+  void insert(std::vector<T>& values, const Before& before, const Value& value) const {
+    auto next = extensions_.rbegin();
+    const auto insert_at = [&](std::size_t line, int end, auto place) {
+      if (next == extensions_.rend() || next->line != line || next->end != end) return place;
+      *--place = value(*next++);
+      return place;
+    };
+    values.resize(values.size() + extensions_.size());
+    auto place = values.end();
+    for (auto line = placement_.offsets.size() - 1; line-- > 0;) {
+      place = insert_at(line, 1, place);
+      place = std::move_backward(values.begin() + before(line), values.begin() + before(line + 1), place);
+      place = insert_at(line, 0, place);
+    }
+  }
+
+  const StreamlineTracer& tracer_;
+  const Sheet& sheet_;
+  double clearance_;
+  Placement& placement_;
+  SegmentGrid grid_;
+  double longest_ = 0;  // of all segments
+  std::vector<Extension> extensions_;
+};
+
+}  // namespace
+
+std::optional<Chord> chord_ahead(const Sheet& sheet, const Chord& chord) {
+  const Role exit = exit_side(sheet, chord);
+  const auto way_out = sheet.crossings[chord.triangle()].exit(exit);
+  if (way_out.triangle < 0) return std::nullopt;
+  const auto& crossings = sheet.crossings[way_out.triangle];
+  const double position = edge_position(sheet.crossings[chord.triangle()], exit, chord.coordinate);
+  const double coordinate = chord_coordinate(crossings, way_out.role, position);
+  const bool leaves_through_low_high = exit_role(crossings, way_out.role, coordinate) == low_high;
+  return Chord{coordinate, static_cast<float>(chord_length(crossings, coordinate)),
+               2 * way_out.triangle + leaves_through_low_high};
+}
+
+void extend_ends(const StreamlineTracer& tracer, double clearance, const std::vector<ChordsAhead>& ahead,
+                 Placement& placement) {
+  EndExtender(tracer, clearance, placement).run(ahead);
+}
+
+}  // namespace pectinate::detail
