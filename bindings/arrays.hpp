@@ -6,10 +6,12 @@
 
 #include <array>
 #include <functional>
+#include <memory>
 #include <span>
 #include <type_traits>
 #include <vector>
 
+#include "pectinate/mesh_rows.hpp"
 #include "pectinate/types.hpp"
 
 namespace pectinate::bindings {
@@ -66,6 +68,17 @@ template <class T, std::size_t Columns>
 py::array view(const std::vector<std::array<T, Columns>>& rows, py::handle owner) {
   const std::array shape{static_cast<py::ssize_t>(rows.size()), static_cast<py::ssize_t>(Columns)};
   return read_only_view(shape, reinterpret_cast<const T*>(rows.data()), owner);
+}
+
+/// A read-only array of what is computed when it is asked for.
+template <auto At>
+py::array view(const ComputedRow<At>& row, py::handle) {
+  using Values = std::vector<decltype(row[0])>;
+  auto values = std::make_unique<Values>();
+  values->reserve(row.size());
+  for (const auto& value : row) values->push_back(value);
+  const py::capsule owner(values.get(), [](void* memory) { delete static_cast<Values*>(memory); });
+  return view(*values.release(), owner);
 }
 
 /// A getter for `def_property_readonly` that views a member of the bound object.

@@ -7,21 +7,20 @@
 #include <string>
 
 #include "detail/vec.hpp"
+#include "detail/vector_projection.hpp"
 #include "pectinate/errors.hpp"
 
 namespace pectinate {
 namespace {
 
+using detail::least_share;
+using detail::PlanarDirections;
 using detail::Vector;
 using detail::vector;
-
-/// Below this share of the input nothing meaningful is left in the plane.
-constexpr double least_share = 1e-9;
 
 struct Direction {
   DirectionStatus status;
   Vector unit = Vector::Zero();
-  double out_of_plane_angle = 0;
 };
 
 using Sides = std::array<Vector, 3>;
@@ -50,22 +49,6 @@ Vector with_canonical_sign(const Vector& direction, const Sides& sides) {
     if (std::abs(product) > std::abs(greatest)) greatest = product;
   }
   return greatest < 0 ? Vector(-direction) : direction;
-}
-
-Direction from_vector(const Vec3& input, const Plane& plane) {
-  const Vector v = vector(input);
-  if (!v.allFinite()) return {DirectionStatus::non_finite};
-  const double scale = v.cwiseAbs().maxCoeff();
-  if (scale == 0) return {DirectionStatus::zero};
-  const Vector unit = (v / scale).normalized();
-  const double height = unit.dot(plane.normal);
-  const Vector in_plane = unit - height * plane.normal;
-  const double share = in_plane.norm();
-  if (share <= least_share) return {DirectionStatus::normal};
-  // Most made fields lie in the plane: there the angle is its tangent, to the last bit.
-  const double tangent = std::abs(height) / share;
-  return {DirectionStatus::valid, with_canonical_sign(in_plane / share, plane.sides),
-          tangent < 1e-9 ? tangent : std::atan(tangent)};
 }
 
 /// A symmetric tensor in a triangle's plane, spanned by its first side and the direction to the left of it: t_uu - t_vv
@@ -150,12 +133,6 @@ std::array<Input, 3> at_corners(const SurfaceMesh& mesh, std::size_t t, std::spa
   return {per_vertex[input[a]], per_vertex[input[b]], per_vertex[input[c]]};
 }
 
-struct Directions {
-  std::vector<Vec3> units;
-  std::vector<DirectionStatus> status;
-  std::vector<double> out_of_plane_angles;
-};
-
 void require_any(const std::vector<DirectionStatus>& status) {
   if (std::ranges::find(status, DirectionStatus::valid) != status.end()) return;
   throw InvalidField(
@@ -166,24 +143,23 @@ void require_any(const std::vector<DirectionStatus>& status) {
 
 /// What `direct(t, plane)` says of every triangle.
 template <class Direct>
-Directions direct_all(const SurfaceMesh& mesh, const Direct& direct) {
-  Directions all;
+PlanarDirections direct_all(const SurfaceMesh& mesh, const Direct& direct) {
+  PlanarDirections all;
   all.units.reserve(mesh.triangle_count());
   all.status.reserve(mesh.triangle_count());
-  all.out_of_plane_angles.reserve(mesh.triangle_count());
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
     const Direction result = direct(t, plane_of(mesh, t));
     all.units.push_back(detail::vec3(result.unit));
     all.status.push_back(result.status);
-    all.out_of_plane_angles.push_back(result.out_of_plane_angle);
   }
+  all.out_of_plane_angles.resize(mesh.triangle_count(), 0);
   require_any(all.status);
   return all;
 }
 
 /// Averages the inputs at the corners of every triangle.
 template <class Input>
-Directions average_corners(const SurfaceMesh& mesh, std::span<const Input> inputs) {
+PlanarDirections average_corners(const SurfaceMesh& mesh, std::span<const Input> inputs) {
   check_count(inputs.size(), mesh.input_vertex_count(), "vertices");
   return direct_all(
       mesh, [&](std::size_t t, const Plane& plane) { return average<Input>(at_corners(mesh, t, inputs), plane); });
@@ -199,8 +175,8 @@ OrientationField::OrientationField(std::vector<Vec3> directions, std::vector<Dir
 
 OrientationField OrientationField::from_triangle_vectors(const SurfaceMesh& mesh, std::span<const Vec3> vectors) {
   check_count(vectors.size(), mesh.input_triangle_count(), "triangles");
-  auto [units, status, angles] = direct_all(
-      mesh, [&](std::size_t t, const Plane& plane) { return from_vector(vectors[mesh.input_triangle()[t]], plane); });
+  auto [units, status, angles] = detail::project_vectors(mesh, vectors);
+  require_any(status);
   return {std::move(units), std::move(status), std::move(angles)};
 }
 

@@ -15,50 +15,55 @@ namespace {
 
 using detail::vector;
 
-/// Swapping corners 1 and 2 reverses a triangle; its sides then come in this order.
-constexpr std::array<std::int8_t, 3> reversed_side = {2, 1, 0};
-
-void reverse_triangles(const std::vector<bool>& reverse, std::vector<Triangle>& triangles, detail::Topology& topology) {
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    if (reverse[t]) {
-      std::swap(triangles[t][1], triangles[t][2]);
-      std::swap(topology.triangle_edges[t][0], topology.triangle_edges[t][2]);
-      std::swap(topology.neighbours[t][0], topology.neighbours[t][2]);
-      const int along = topology.side_runs_along[t];
-      topology.side_runs_along[t] = static_cast<std::uint8_t>(~((along >> 2 & 1) | (along & 2) | (along & 1) << 2) & 7);
-    }
-    for (auto& across : topology.neighbours[t]) {
-      if (across.triangle >= 0 && reverse[across.triangle]) across.side = reversed_side[across.side];
-    }
-  }
+/// Triangles in ascending order that are in the one list or in the other, but not in both.
+std::vector<std::int32_t> in_one(const std::vector<std::int32_t>& some, const std::vector<std::int32_t>& others) {
+  std::vector<std::int32_t> result;
+  std::ranges::set_symmetric_difference(some, others, std::back_inserter(result));
+  return result;
 }
 
-std::vector<SurfaceComponent> count_components(const std::vector<Triangle>& triangles, std::size_t vertex_count,
-                                               const std::vector<std::array<SideNeighbour, 3>>& neighbours,
-                                               const std::vector<double>& areas, const std::vector<BoundaryLoop>& loops,
-                                               const detail::Orientation& orientation) {
-  std::vector<SurfaceComponent> components(orientation.orientable.size());
-  std::vector<std::int32_t> half_edges(components.size(), 0);  // twice the number of edges
-  std::vector<std::int32_t> component_of_vertex(vertex_count, -1);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto c = orientation.triangle_components[t];
-    components[c].triangle_count += 1;
-    components[c].area += areas[t];
-    for (std::size_t k = 0; k < 3; ++k) {
-      half_edges[c] += neighbours[t][k].triangle < 0 ? 2 : 1;
-      component_of_vertex[triangles[t][k]] = c;
-    }
+/// Everything about components but their genus, which hangs on their loops.
+std::vector<SurfaceComponent> measure_components(const std::vector<std::int32_t>& triangle_components,
+                                                 const std::vector<bool>& orientable,
+                                                 const std::vector<double>& areas) {
+  std::vector<SurfaceComponent> components(orientable.size());
+  for (std::size_t t = 0; t < areas.size(); ++t) {
+    auto& component = components[triangle_components[t]];
+    component.triangle_count += 1;
+    component.area += areas[t];
   }
-  for (const auto c : component_of_vertex) components[c].euler_characteristic += 1;
-  for (const auto& loop : loops) components[loop.component].boundary_loop_count += 1;
+  for (std::size_t c = 0; c < components.size(); ++c) components[c].orientable = orientable[c];
+  return components;
+}
+
+std::vector<std::int32_t> count_vertices(const std::vector<Triangle>& triangles, std::size_t vertex_count,
+                                         const std::vector<std::int32_t>& triangle_components,
+                                         std::size_t component_count) {
+  if (component_count == 1) return {static_cast<std::int32_t>(vertex_count)};
+  std::vector<std::int32_t> component_of_vertex(vertex_count), counts(component_count, 0);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (const auto v : triangles[t]) component_of_vertex[v] = triangle_components[t];
+  }
+  for (const auto c : component_of_vertex) counts[c] += 1;
+  return counts;
+}
+
+/// Sides at a border belong to one triangle, the others to two.
+void count_genus(const std::vector<std::int32_t>& vertex_counts, const std::vector<BoundaryLoop>& loops,
+                 std::vector<SurfaceComponent>& components) {
+  std::vector<std::int32_t> border_sides(components.size(), 0);
+  for (const auto& loop : loops) {
+    components[loop.component].boundary_loop_count += 1;
+    border_sides[loop.component] += static_cast<std::int32_t>(loop.vertices.size());
+  }
   for (std::size_t c = 0; c < components.size(); ++c) {
     auto& component = components[c];
-    component.euler_characteristic += static_cast<std::int32_t>(component.triangle_count) - half_edges[c] / 2;
-    component.orientable = orientation.orientable[c];
+    const auto triangle_count = static_cast<std::int32_t>(component.triangle_count);
+    const auto edge_count = (3 * triangle_count + border_sides[c]) / 2;
+    component.euler_characteristic = vertex_counts[c] - edge_count + triangle_count;
     const auto deficit = 2 - component.euler_characteristic - component.boundary_loop_count;
     component.genus = component.orientable ? deficit / 2 : deficit;
   }
-  return components;
 }
 
 }  // namespace
@@ -66,60 +71,73 @@ std::vector<SurfaceComponent> count_components(const std::vector<Triangle>& tria
 SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangle> triangles)
     : input_vertex_count_(vertices.size()), input_triangle_count_(triangles.size()) {
   auto soup = detail::clean_triangle_soup(vertices, triangles);
-  auto topology = detail::make_topology(soup);
-  for (const auto edge : topology.cut_edges) {
-    const auto [a, b] = topology.edges[edge];
-    soup.repairs.non_manifold_edges.push_back({soup.input_vertex[a], soup.input_vertex[b]});
+  auto topology = detail::join_triangles(soup);
+  const auto repetitions = detail::find_repetitions(soup, detail::likely_repetitions(topology));
+  if (!repetitions.empty()) {
+    soup = detail::drop_repetitions(std::move(soup), repetitions);
+    topology = detail::join_triangles(soup);
   }
-  soup = detail::split_vertices(std::move(soup), topology);
+  for (const auto& cut : topology.cut_edges) {
+    const auto [a, b] = topology.edges[cut.edge];
+    soup.repairs.non_manifold_edges.push_back(
+        {detail::input_index(soup.input_vertex, a), detail::input_index(soup.input_vertex, b)});
+    auto& around = cut_triangles_.emplace_back();
+    for (const auto side : cut.sides) around.push_back(side >> 2);
+  }
+  topology = detail::rejoin_slits(std::move(topology), soup);
+  first_copy_ = static_cast<std::int32_t>(soup.vertices.size());
+  auto split = detail::split_vertices(std::move(soup), topology);
 
-  auto orientation = detail::find_orientation(topology);
-  loops_ =
-      detail::find_boundary_loops(soup.vertices, soup.triangles, topology.neighbours, orientation.triangle_components);
-  const auto inwards = detail::points_inwards(soup.vertices, soup.triangles, topology.neighbours, orientation, loops_);
-  for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-    if (inwards[orientation.triangle_components[t]]) orientation.reverse[t] = !orientation.reverse[t];
-    if (orientation.reverse[t]) soup.repairs.reversed_triangles.push_back(soup.input_triangle[t]);
-  }
-  reverse_triangles(orientation.reverse, soup.triangles, topology);
-  // Loops run with their triangles, so they are walked once more where windings changed.
-  if (!soup.repairs.reversed_triangles.empty()) {
-    loops_ = detail::find_boundary_loops(soup.vertices, soup.triangles, topology.neighbours,
-                                         orientation.triangle_components);
-  }
-
-  vertices_ = std::move(soup.vertices);
-  triangles_ = std::move(soup.triangles);
-  input_vertex_ = std::move(soup.input_vertex);
-  input_triangle_ = std::move(soup.input_triangle);
-  repairs_ = std::move(soup.repairs);
+  vertices_ = std::move(split.soup.vertices);
+  triangles_ = std::move(split.soup.triangles);
+  areas_ = std::move(split.soup.areas);
+  input_vertex_ = std::move(split.soup.input_vertex);
+  input_triangle_ = std::move(split.soup.input_triangle);
+  repairs_ = std::move(split.soup.repairs);
+  copied_vertices_ = std::move(split.copied_vertices);
+  orient(topology);
   edges_ = std::move(topology.edges);
   triangle_edges_ = std::move(topology.triangle_edges);
-  edge_offsets_ = std::move(topology.edge_offsets);
-  edge_triangles_ = std::move(topology.edge_triangles);
+  edge_sides_ = std::move(topology.edge_sides);
   neighbours_ = std::move(topology.neighbours);
-  side_runs_along_ = std::move(topology.side_runs_along);
-  triangle_components_ = orientation.triangle_components;
-  measure();
-  components_ = count_components(triangles_, vertices_.size(), neighbours_, areas_, loops_, orientation);
+  for (const double area : areas_) area_ += area;
 }
 
-void SurfaceMesh::measure() {
-  areas_.reserve(triangles_.size());
-  normals_.reserve(triangles_.size());
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    const auto& [a, b, c] = triangles_[t];
-    const detail::Vector normal =
-        (vector(vertices_[b]) - vector(vertices_[a])).cross(vector(vertices_[c]) - vector(vertices_[a]));
-    const double twice_area = normal.norm();
-    areas_.push_back(twice_area / 2);
-    normals_.push_back(detail::vec3(normal / twice_area));
-    area_ += areas_.back();
+void SurfaceMesh::orient(detail::Topology& topology) {
+  auto orientation = detail::find_orientation(topology.neighbours);
+  auto& reversed = orientation.to_reverse;
+  for (const auto t : reversed) detail::reverse_triangle(t, triangles_, topology);
+  triangle_components_ = std::move(orientation.triangle_components);
+  const auto find_loops = [&] {
+    return detail::find_boundary_loops(vertices_, triangles_, topology.neighbours, triangle_components_);
+  };
+  loops_ = find_loops();
+  components_ = measure_components(triangle_components_, orientation.orientable, areas_);
+  const auto inwards = detail::points_inwards(vertices_, triangles_, triangle_components_, components_, loops_);
+  if (std::ranges::find(inwards, true) != inwards.end()) {
+    std::vector<std::int32_t> inside_out;
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles_.size()); ++t) {
+      if (inwards[triangle_components_[t]]) inside_out.push_back(t);
+    }
+    for (const auto t : inside_out) detail::reverse_triangle(t, triangles_, topology);
+    reversed = in_one(reversed, inside_out);
+    loops_ = find_loops();  // they run with their triangles
   }
-  edge_lengths_.reserve(edges_.size());
-  for (const auto& [a, b] : edges_) {
-    edge_lengths_.push_back((vector(vertices_[b]) - vector(vertices_[a])).norm());
-  }
+  for (const auto t : reversed) repairs_.reversed_triangles.push_back(input_triangle_of(t));
+  count_genus(count_vertices(triangles_, vertices_.size(), triangle_components_, components_.size()), loops_,
+              components_);
+}
+
+double SurfaceMesh::edge_length(std::int32_t edge) const {
+  const auto& [a, b] = edges_[edge];
+  return (vector(vertices_[b]) - vector(vertices_[a])).norm();
+}
+
+Vec3 SurfaceMesh::triangle_normal(std::int32_t triangle) const {
+  const auto& [a, b, c] = triangles_[triangle];
+  const detail::Vector normal =
+      (vector(vertices_[b]) - vector(vertices_[a])).cross(vector(vertices_[c]) - vector(vertices_[a]));
+  return detail::vec3(normal / (2 * areas_[triangle]));
 }
 
 double SurfaceMesh::bounding_box_diagonal() const {

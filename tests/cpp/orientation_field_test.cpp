@@ -201,6 +201,21 @@ TEST_CASE("field: it turns with the surface") {
         OrientationField::from_vertex_vectors(turned, rotated(corner_vectors)));
 }
 
+TEST_CASE("field: a triangle's direction does not depend on how many there are") {
+  const auto all = jittered_grid(3, 2);
+  const auto vectors = random_vectors(all.triangles.size(), 3);
+  const auto expected = OrientationField::from_triangle_vectors(all.mesh(), vectors);
+  for (std::size_t count = 1; count < vectors.size(); ++count) {
+    auto soup = all;
+    soup.triangles.resize(count);
+    const auto field = OrientationField::from_triangle_vectors(soup.mesh(), std::span(vectors).first(count));
+    for (std::size_t t = 0; t < count; ++t) {
+      CHECK(field.directions()[t] == expected.directions()[t]);
+      CHECK(field.out_of_plane_angles()[t] == expected.out_of_plane_angles()[t]);
+    }
+  }
+}
+
 TEST_CASE("field: rows follow the input, dropped triangles included") {
   Soup soup = jittered_grid(2, 1);
   soup.triangles.insert(soup.triangles.begin() + 1, {0, 0, 1});

@@ -169,6 +169,47 @@ TEST_CASE("mesh: two closed shells that touch along an edge stay closed") {
   CHECK(mesh.boundary_loops().empty());
 }
 
+TEST_CASE("mesh: closed shells that touch at a vertex, or touch a border there, are parted") {
+  // Fans of three and three triangles, of three and four, and of three closed ones beside an open one.
+  const Soup shells[] = {tetrahedron(), sphere(0), jittered_grid(2, 2)};
+  for (const auto& other : shells) {
+    auto soup = together(tetrahedron(), moved(other, {5, 0, 0}));
+    const auto knot = soup.triangles.back()[0];
+    for (auto& triangle : soup.triangles) std::ranges::replace(triangle, knot, 0);
+    const auto mesh = checked(soup);
+    CHECK(mesh.components().size() == 2);
+    CHECK(mesh.components()[0].euler_characteristic == 2);
+    CHECK(mesh.repairs().split_vertices == Indices{0});
+    CHECK(mesh.repairs().unreferenced_vertices == Indices{knot});
+  }
+}
+
+TEST_CASE("mesh: exact repetitions are found where edges join two triangles, and where they join more") {
+  for (auto soup : {one_triangle(), three_on_an_edge(), sphere(1), moebius_strip(7, 1)}) {
+    const auto once = checked(soup);
+    const auto count = soup.triangles.size();
+    Indices repeated;
+    for (std::size_t t = 0; t < count; t += 2) {
+      const auto [a, b, c] = soup.triangles[t];
+      repeated.push_back(static_cast<std::int32_t>(soup.triangles.size()));
+      soup.triangles.push_back(t % 4 == 0 ? Triangle{b, c, a} : Triangle{a, c, b});
+    }
+    const auto mesh = checked(soup);
+    CHECK(mesh.repairs().duplicate_triangles == repeated);
+    CHECK(mesh.triangles() == once.triangles());
+    CHECK(mesh.repairs().reversed_triangles == once.repairs().reversed_triangles);
+  }
+}
+
+TEST_CASE("mesh: a Moebius strip's border belongs to it, wherever its seam begins") {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const auto mesh = checked(tumbled(moebius_strip(5, 1), seed));
+    REQUIRE(mesh.boundary_loops().size() == 1);
+    CHECK(mesh.boundary_loops()[0].component == 0);
+    CHECK(mesh.components()[0].boundary_loop_count == 1);
+  }
+}
+
 TEST_CASE("mesh: components are told apart and measured one by one") {
   const auto mesh = checked(together(sphere(1), moved(torus(8, 6), {9, 0, 0})));
   REQUIRE(mesh.components().size() == 2);

@@ -6,9 +6,14 @@
 #include <span>
 #include <vector>
 
+#include "pectinate/mesh_rows.hpp"
 #include "pectinate/types.hpp"
 
 namespace pectinate {
+
+namespace detail {
+struct Topology;
+}
 
 /// What was changed to make a surface of the input; every index is one of the input's.
 struct MeshRepairs {
@@ -41,12 +46,6 @@ struct SurfaceComponent {
   std::int32_t genus;  ///< number of handles; of cross-caps when not orientable
 };
 
-/// A triangle's side in the surface: the triangle across it, or none.
-struct SideNeighbour {
-  std::int32_t triangle = -1;  ///< -1 at a border (also where a non-manifold edge was cut)
-  std::int8_t side = -1;       ///< the side of that triangle
-};
-
 /// A triangulated surface made of any triangle soup: cut open where it is no manifold, consistently oriented where it
 /// can be, with areas, normals and adjacency. Immutable.
 ///
@@ -64,28 +63,43 @@ class SurfaceMesh {
   const std::vector<Triangle>& triangles() const { return triangles_; }
   std::size_t triangle_count() const { return triangles_.size(); }
 
-  /// The input's counts and, for each vertex and triangle here, its index there.
+  /// The input's counts and, for each vertex and triangle here, its index there. What comes as a ComputedRow, here and
+  /// below, is not stored: its elements are made one by one as they are asked for.
   std::size_t input_vertex_count() const { return input_vertex_count_; }
   std::size_t input_triangle_count() const { return input_triangle_count_; }
-  const std::vector<std::int32_t>& input_vertex() const { return input_vertex_; }
-  const std::vector<std::int32_t>& input_triangle() const { return input_triangle_; }
+  std::int32_t input_vertex_of(std::int32_t vertex) const {
+    return input_vertex_.empty() ? vertex : input_vertex_[vertex];
+  }
+  std::int32_t input_triangle_of(std::int32_t triangle) const {
+    return input_triangle_.empty() ? triangle : input_triangle_[triangle];
+  }
+  auto input_vertex() const { return ComputedRow<&SurfaceMesh::input_vertex_of>(*this, vertices_.size()); }
+  auto input_triangle() const { return ComputedRow<&SurfaceMesh::input_triangle_of>(*this, triangles_.size()); }
   const MeshRepairs& repairs() const { return repairs_; }
 
   /// Geometric edges: their end vertices (one copy of each where the surface was cut) and lengths.
   const std::vector<std::array<std::int32_t, 2>>& edges() const { return edges_; }
-  const std::vector<double>& edge_lengths() const { return edge_lengths_; }
+  double edge_length(std::int32_t edge) const;
+  auto edge_lengths() const { return ComputedRow<&SurfaceMesh::edge_length>(*this, edges_.size()); }
   /// Per triangle, the edge of each side.
   const std::vector<std::array<std::int32_t, 3>>& triangle_edges() const { return triangle_edges_; }
   /// All triangles at an edge: one, two, or more where it was cut.
-  std::span<const std::int32_t> edge_triangles(std::int32_t edge) const {
-    return {edge_triangles_.data() + edge_offsets_[edge], edge_triangles_.data() + edge_offsets_[edge + 1]};
+  EdgeTriangles edge_triangles(std::int32_t edge) const {
+    const auto first = edge_sides_[edge];
+    if (first < 0) return EdgeTriangles(cut_triangles_[~first]);
+    const auto across = neighbours_[first >> 2][first & 3];
+    return across.exists() ? EdgeTriangles(first >> 2, across.triangle()) : EdgeTriangles(first >> 2);
   }
   /// True where corner `side` of the triangle is the first end vertex of the edge of side `side`.
-  bool runs_along(std::int32_t triangle, int side) const { return side_runs_along_[triangle] >> side & 1; }
-  const SideNeighbour& neighbour(std::int32_t triangle, int side) const { return neighbours_[triangle][side]; }
+  bool runs_along(std::int32_t triangle, int side) const {
+    const auto& corners = triangles_[triangle];
+    return uncopied(corners[side]) < uncopied(corners[side == 2 ? 0 : side + 1]);
+  }
+  SideNeighbour neighbour(std::int32_t triangle, int side) const { return neighbours_[triangle][side].unpacked(); }
 
   const std::vector<double>& triangle_areas() const { return areas_; }
-  const std::vector<Vec3>& triangle_normals() const { return normals_; }  ///< unit
+  Vec3 triangle_normal(std::int32_t triangle) const;  ///< unit
+  auto triangle_normals() const { return ComputedRow<&SurfaceMesh::triangle_normal>(*this, triangles_.size()); }
   const std::vector<std::int32_t>& triangle_components() const { return triangle_components_; }
   double area() const { return area_; }
   double bounding_box_diagonal() const;
@@ -94,21 +108,26 @@ class SurfaceMesh {
   const std::vector<BoundaryLoop>& boundary_loops() const { return loops_; }  ///< longest first
 
  private:
-  void measure();
+  void orient(detail::Topology& topology);
+  /// Of a vertex that was duplicated, the first copy.
+  std::int32_t uncopied(std::int32_t vertex) const {
+    const auto copy = vertex - first_copy_;
+    return copy < 0 ? vertex : copied_vertices_[copy];
+  }
 
   std::vector<Vec3> vertices_;
   std::vector<Triangle> triangles_;
   std::size_t input_vertex_count_, input_triangle_count_;
-  std::vector<std::int32_t> input_vertex_, input_triangle_;
+  std::vector<std::int32_t> input_vertex_, input_triangle_;  // empty where they count up
   MeshRepairs repairs_;
+  std::int32_t first_copy_ = 0;                // vertices from here on are copies
+  std::vector<std::int32_t> copied_vertices_;  // of these
   std::vector<std::array<std::int32_t, 2>> edges_;
-  std::vector<double> edge_lengths_;
   std::vector<std::array<std::int32_t, 3>> triangle_edges_;
-  std::vector<std::int32_t> edge_offsets_, edge_triangles_;
-  std::vector<std::uint8_t> side_runs_along_;
-  std::vector<std::array<SideNeighbour, 3>> neighbours_;
+  std::vector<std::int32_t> edge_sides_;  // 4 triangle + side of the first triangle; where it was cut ~i, i of
+  std::vector<std::vector<std::int32_t>> cut_triangles_;
+  std::vector<std::array<PackedNeighbour, 3>> neighbours_;
   std::vector<double> areas_;
-  std::vector<Vec3> normals_;
   std::vector<std::int32_t> triangle_components_;
   double area_ = 0;
   std::vector<SurfaceComponent> components_;

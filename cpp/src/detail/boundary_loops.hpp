@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
+#include "detail/fans.hpp"
 #include "pectinate/surface_mesh.hpp"
 
 namespace pectinate::detail {
@@ -12,7 +12,7 @@ namespace pectinate::detail {
 /// The closed borders of a surface in which every vertex has one fan, longest first. Each starts at its smallest
 /// vertex and runs as its first triangle's side does.
 std::vector<BoundaryLoop> find_boundary_loops(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
-                                              const std::vector<std::array<SideNeighbour, 3>>& neighbours,
+                                              const Neighbours& neighbours,
                                               const std::vector<std::int32_t>& triangle_components);
 
 }  // namespace pectinate::detail

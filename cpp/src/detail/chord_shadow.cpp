@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "detail/chord_shadow.hpp"
 
+#include <cstdint>
+#include <limits>
+
 namespace pectinate::detail {
 
 #define PECTINATE_KERNEL "detail/chord_shadow_lanes.inl"

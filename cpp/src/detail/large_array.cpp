@@ -3,6 +3,8 @@
 
 #ifdef __linux__
 #include <sys/mman.h>
+
+#include <cstdint>
 #endif
 
 namespace pectinate::detail {
@@ -11,7 +13,9 @@ void prefer_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::siz
 #ifdef __linux__
   // What the system answers makes no difference but in speed.
   constexpr std::size_t large_page = std::size_t{1} << 21;
-  (void)madvise(memory, size / large_page * large_page, MADV_HUGEPAGE);
+  const std::size_t before = -reinterpret_cast<std::uintptr_t>(memory) % large_page;
+  if (size < before + large_page) return;
+  (void)madvise(static_cast<char*>(memory) + before, (size - before) / large_page * large_page, MADV_HUGEPAGE);
 #endif
 }
 

@@ -8,8 +8,25 @@
 
 namespace pectinate::detail {
 
-/// Asks the system to back whole large pages of this memory by such; a hint.
+/// Asks the system to back what whole large pages lie in this memory by such; a hint.
 void prefer_large_pages(void* memory, std::size_t size);
+
+/// An empty vector with room for so many elements, in large pages where it fills such.
+template <class T>
+std::vector<T> roomy_vector(std::size_t count) {
+  std::vector<T> result;
+  result.reserve(count);
+  prefer_large_pages(result.data(), count * sizeof(T));
+  return result;
+}
+
+/// The same, filled with a value.
+template <class T>
+std::vector<T> roomy_vector(std::size_t count, const T& value) {
+  auto result = roomy_vector<T>(count);
+  result.resize(count, value);
+  return result;
+}
 
 /// Memory of large arrays that are walked over at random: in large pages, where the system has them, it costs fewer
 /// page faults and less translation of addresses.
@@ -53,5 +70,12 @@ class LargePageAllocator {
 /// Elements of built-in types have no value until they are given one.
 template <class T>
 using LargeArray = std::vector<T, LargePageAllocator<T>>;
+
+/// How many elements, not less than so many, fill large pages to the last; of less than a large page, as many.
+template <class T>
+constexpr std::size_t fill_large_pages(std::size_t count) {
+  constexpr std::size_t page = (std::size_t{1} << 21) / sizeof(T);
+  return count < page ? count : (count + page - 1) / page * page;
+}
 
 }  // namespace pectinate::detail

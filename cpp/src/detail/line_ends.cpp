@@ -35,10 +35,10 @@ class EndExtender {
   void run(const std::vector<ChordsAhead>& ahead) {
     for (std::size_t line = 0; line < ahead.size(); ++line) {
       for (const int end : {0, 1}) {
-        if (!ahead[line][end]) continue;
-        const auto& chord = *ahead[line][end];
-        extensions_.push_back({line, end, chord, point_on(sheet_, chord, entry_side(sheet_, chord)),
-                               point_on(sheet_, chord, exit_side(sheet_, chord))});
+        if (const auto& chord = ahead[line][end]) {
+          extensions_.push_back({line, end, *chord, point_on(sheet_, *chord, entry_side(sheet_, *chord)),
+                                 point_on(sheet_, *chord, exit_side(sheet_, *chord))});
+        }
       }
     }
     fill_grid();

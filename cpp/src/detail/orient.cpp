@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "detail/large_array.hpp"
 #include "detail/vec.hpp"
 
 namespace pectinate::detail {
@@ -12,78 +13,98 @@ namespace {
 /// Below this volume over area^1.5 (a sphere has 0.094) inside and outside are no matter of the surface's shape.
 constexpr double least_relative_volume = 1e-3;
 
-}  // namespace
+/// Components as they are found. A triangle's state is twice its component, and one more where it is to be reversed.
+class Flood {
+ public:
+  explicit Flood(const Neighbours& neighbours)
+      : neighbours_(neighbours),
+        states_(roomy_vector<std::int32_t>(neighbours.size(), -1)),
+        reached_(roomy_vector<std::int32_t>(neighbours.size() + 1, 0)) {}
 
-Orientation find_orientation(const Topology& topology) {
-  constexpr std::int32_t none = -1;
-  const auto& neighbours = topology.neighbours;
-  const auto count = static_cast<std::int32_t>(neighbours.size());
-  Orientation result{std::vector<std::int32_t>(count, none), {}, std::vector<bool>(count, false)};
-  std::vector<std::int32_t> members;
-  members.reserve(count);
-  for (std::int32_t start = 0; start < count; ++start) {
-    if (result.triangle_components[start] != none) continue;
-    const auto component = static_cast<std::int32_t>(result.orientable.size());
-    result.orientable.push_back(true);
-    result.triangle_components[start] = component;
-    members.assign(1, start);
+  bool has_reached(std::int32_t t) const { return states_[t] >= 0; }
+
+  /// Numbers the component of a triangle; tells whether it is orientable.
+  bool fill(std::int32_t start, std::int32_t component) {
+    const auto first = end_;
+    states_[start] = 2 * component;
+    reached_[end_++] = start;
+    std::int32_t is_twisted = 0;
     std::size_t reversed = 0;
-    for (std::size_t i = 0; i < members.size(); ++i) {
-      const auto t = members[i];
-      const bool is_reversed = result.reverse[t];
-      reversed += is_reversed;
-      for (int k = 0; k < 3; ++k) {
-        const auto other = neighbours[t][k].triangle;
-        if (other < 0) continue;
-        const bool reverse = is_reversed != static_cast<bool>(topology.side_runs_alike[t] >> k & 1);
-        if (result.triangle_components[other] == none) {
-          result.triangle_components[other] = component;
-          result.reverse[other] = reverse;
-          members.push_back(other);
-          __builtin_prefetch(&neighbours[other]);  // by the time its turn comes it will be at hand
-        } else if (result.reverse[other] != reverse) {
-          result.orientable.back() = false;
-        }
+    for (auto i = first; i < end_; ++i) {
+      const auto state = states_[reached_[i]];
+      reversed += state & 1;
+      for (const auto across : neighbours_[reached_[i]]) {
+        if (!across.exists()) continue;
+        const auto other = across.triangle(), before = states_[other];
+        const auto expected = state ^ static_cast<std::int32_t>(across.runs_alike());
+        // Whether it is new is anyone's guess, so there is no branch: it is noted anyhow.
+        const bool is_new = before < 0;
+        states_[other] = is_new ? expected : before;
+        is_twisted |= is_new ? 0 : before ^ expected;
+        reached_[end_] = other;
+        end_ += is_new;
+        __builtin_prefetch(&neighbours_[other]);  // by the time its turn comes it will be at hand
       }
     }
-    if (2 * reversed > members.size()) {
-      for (const auto t : members) result.reverse[t] = !result.reverse[t];
+    if (2 * reversed > end_ - first) {
+      for (auto i = first; i < end_; ++i) states_[reached_[i]] ^= 1;
     }
+    return is_twisted == 0;
+  }
+
+  std::vector<std::int32_t> take_states() && { return std::move(states_); }
+
+ private:
+  const Neighbours& neighbours_;
+  std::vector<std::int32_t> states_, reached_;
+  std::size_t end_ = 0;  // of what was reached
+};
+
+}  // namespace
+
+Orientation find_orientation(const Neighbours& neighbours) {
+  const auto count = static_cast<std::int32_t>(neighbours.size());
+  Orientation result;
+  Flood flood(neighbours);
+  for (std::int32_t start = 0; start < count; ++start) {
+    if (flood.has_reached(start)) continue;
+    const auto component = static_cast<std::int32_t>(result.orientable.size());
+    result.orientable.push_back(flood.fill(start, component));
+  }
+  result.triangle_components = std::move(flood).take_states();
+  for (std::int32_t t = 0; t < count; ++t) {
+    auto& state = result.triangle_components[t];
+    if (state & 1) result.to_reverse.push_back(t);
+    state >>= 1;
   }
   return result;
 }
 
 std::vector<bool> points_inwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
-                                 const std::vector<std::array<SideNeighbour, 3>>& neighbours,
-                                 const Orientation& orientation, const std::vector<BoundaryLoop>& loops) {
-  const auto component_count = orientation.orientable.size();
-  std::vector<double> volume(component_count, 0), area(component_count, 0);
-  std::vector<Vector> origin(component_count, Vector::Zero());
-  for (std::size_t t = triangles.size(); t-- > 0;) {
-    origin[orientation.triangle_components[t]] = vector(vertices[triangles[t][0]]);
-  }
-  std::vector<std::int32_t> loop_of_vertex(vertices.size(), -1);
-  for (std::size_t l = 0; l < loops.size(); ++l) {
-    for (const auto v : loops[l].vertices) loop_of_vertex[v] = static_cast<std::int32_t>(l);
-  }
+                                 const std::vector<std::int32_t>& triangle_components,
+                                 const std::vector<SurfaceComponent>& components,
+                                 const std::vector<BoundaryLoop>& loops) {
+  std::vector<double> volume(components.size(), 0);  // six times
+  std::vector<Vector> origin(components.size(), Vector::Zero());
+  for (std::size_t t = triangles.size(); t-- > 0;) origin[triangle_components[t]] = vector(vertices[triangles[t][0]]);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto component = orientation.triangle_components[t];
-    const auto corner = [&](std::size_t k) -> Vector {
-      return vector(vertices[triangles[t][k % 3]]) - origin[component];
-    };
-    const double sign = orientation.reverse[t] ? -1 : 1;
-    const Vector normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-    area[component] += normal.norm() / 2;
-    volume[component] += sign * corner(0).dot(normal) / 6;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (neighbours[t][k].triangle >= 0) continue;
-      const Vector apex = vector(loops[loop_of_vertex[triangles[t][k]]].centroid) - origin[component];
-      volume[component] += sign * apex.dot(corner(k + 1).cross(corner(k))) / 6;
+    const auto& [a, b, c] = triangles[t];
+    const Vector ab = vector(vertices[b]) - vector(vertices[a]), ac = vector(vertices[c]) - vector(vertices[a]);
+    const auto component = triangle_components[t];
+    volume[component] += (vector(vertices[a]) - origin[component]).dot(ab.cross(ac));
+  }
+  for (const auto& loop : loops) {
+    const Vector& from = origin[loop.component];
+    const Vector apex = vector(loop.centroid) - from;
+    for (std::size_t i = 0; i < loop.vertices.size(); ++i) {
+      const Vector a = vector(vertices[loop.vertices[i]]) - from;
+      const Vector b = vector(vertices[loop.vertices[(i + 1) % loop.vertices.size()]]) - from;
+      volume[loop.component] += apex.dot(b.cross(a));
     }
   }
-  std::vector<bool> inwards(component_count);
-  for (std::size_t c = 0; c < component_count; ++c) {
-    inwards[c] = orientation.orientable[c] && volume[c] < -least_relative_volume * std::pow(area[c], 1.5);
+  std::vector<bool> inwards(components.size());
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    inwards[c] = components[c].orientable && volume[c] / 6 < -least_relative_volume * std::pow(components[c].area, 1.5);
   }
   return inwards;
 }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
-#include "detail/topology.hpp"
+#include "detail/fans.hpp"
 #include "pectinate/surface_mesh.hpp"
 
 namespace pectinate::detail {
@@ -13,18 +12,19 @@ namespace pectinate::detail {
 /// Joined triangles, and how to wind them.
 struct Orientation {
   std::vector<std::int32_t> triangle_components;
-  std::vector<bool> orientable;  ///< per component
-  std::vector<bool> reverse;     ///< per triangle: its winding must be reversed
+  std::vector<bool> orientable;          ///< per component
+  std::vector<std::int32_t> to_reverse;  ///< triangles, in ascending order
 };
 
 /// Finds the components and the reversals that make neighbours agree, against as few input windings as possible.
 /// Where a component is not orientable, neighbours disagree along a seam.
-Orientation find_orientation(const Topology& topology);
+Orientation find_orientation(const Neighbours& neighbours);
 
-/// For each component: do its normals point inwards? Told by the volume under it, with its openings closed by fans;
-/// never for non-orientable or (nearly) flat ones.
+/// For each component of a mesh wound like that: do its normals point inwards? Told by the volume under it, with its
+/// openings closed by fans; never for non-orientable or (nearly) flat ones.
 std::vector<bool> points_inwards(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
-                                 const std::vector<std::array<SideNeighbour, 3>>& neighbours,
-                                 const Orientation& orientation, const std::vector<BoundaryLoop>& loops);
+                                 const std::vector<std::int32_t>& triangle_components,
+                                 const std::vector<SurfaceComponent>& components,
+                                 const std::vector<BoundaryLoop>& loops);
 
 }  // namespace pectinate::detail

@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "detail/buckets.hpp"
@@ -24,7 +23,7 @@ class SegmentGrid {
   }
   void finish() {
     const auto count = std::bit_ceil(entries_.size() + 1);
-    by_cell_.emplace(entries_, count, [count](const Entry& entry) { return entry.key & (count - 1); });
+    by_cell_ = Buckets<Entry>(entries_, count, [count](const Entry& entry) { return entry.key & (count - 1); });
     entries_ = {};
   }
 
@@ -52,8 +51,9 @@ class SegmentGrid {
   /// apart.
   template <class Visit>
   void visit_pieces(const Vector& start, const Vector& end, const Visit& visit) const {
-    const double count = 1 + static_cast<double>(floor((end - start).norm() * pieces_per_length_));
-    for (double piece = 0.5; piece < count; ++piece) visit(Vector(start + piece / count * (end - start)));
+    const auto count = 1 + floor((end - start).norm() * pieces_per_length_);
+    const Vector step = (end - start) / static_cast<double>(count);
+    for (std::int64_t i = 0; i < count; ++i) visit(Vector(start + (static_cast<double>(i) + 0.5) * step));
   }
 
   Cell cell_of(const Vector& place) const {
@@ -74,14 +74,14 @@ class SegmentGrid {
 
   template <class Visit>
   void visit_cell(std::uint64_t key, const Visit& visit) {
-    for (const auto& entry : by_cell_->bucket(key & (by_cell_->count() - 1))) {
+    for (const auto& entry : by_cell_.bucket(key & (by_cell_.count() - 1))) {
       if (entry.key == key) visit(entry.segment);
     }
   }
 
   double pieces_per_length_, cells_per_length_;
   std::vector<Entry> entries_;
-  std::optional<Buckets<Entry>> by_cell_;
+  Buckets<Entry> by_cell_{{}, 1, [](const Entry&) { return 0; }};
 };
 
 }  // namespace pectinate::detail

@@ -83,12 +83,14 @@ class SheetMaker {
   /// Fewer than a full set of lanes are filled up with the last one.
   void measure(std::int32_t first, std::int32_t count) {
     Faces faces;
+    std::array<Vec3, measured_lanes> normals;
     for (std::int32_t lane = 0; lane < measured_lanes; ++lane) {
       const auto t = first + std::min(lane, count - 1);
       prefetch(t + measured_ahead);
       const auto& corners = mesh_.triangles()[t];
       for (int k = 0; k < 3; ++k) faces.corners[k][lane] = &mesh_.vertices()[corners[k]];
-      faces.normals[lane] = &mesh_.triangle_normals()[t];
+      normals[lane] = mesh_.triangle_normal(t);
+      faces.normals[lane] = &normals[lane];
       faces.directions[lane] = &field_.directions()[t];
     }
     auto measures = measure_chords(faces);

@@ -5,178 +5,200 @@
 #include <numeric>
 #include <span>
 
+#include "detail/fans.hpp"
+#include "detail/large_array.hpp"
+
 namespace pectinate::detail {
 namespace {
 
-struct Side {
-  std::int32_t triangle;
-  std::int8_t side;
+/// Swapping corners 1 and 2 reverses a triangle; its sides then come in this order.
+constexpr std::array<int, 3> reversed_side = {2, 1, 0};
+
+/// A side at the vertex that is its lower end. Sorted as numbers they are sorted by the other end, then by triangle.
+struct LowSide {
+  std::uint64_t code;
+
+  LowSide() = default;
+  LowSide(std::int32_t high_end, std::int32_t triangle, int side, bool runs_along)
+      : code(static_cast<std::uint64_t>(high_end) << 32 | static_cast<std::uint64_t>(triangle) << 3 |
+             static_cast<std::uint64_t>(side) << 1 | static_cast<std::uint64_t>(runs_along)) {}
+
+  std::int32_t high_end() const { return static_cast<std::int32_t>(code >> 32); }
+  std::int32_t triangle() const { return static_cast<std::int32_t>(static_cast<std::uint32_t>(code) >> 3); }
+  int side() const { return static_cast<int>(code >> 1 & 3); }
+  bool runs_along() const { return code & 1; }  ///< from the lower end to the higher one
+  bool operator<(const LowSide& other) const { return code < other.code; }
 };
 
-/// The sides at each vertex that is their lower end: by the other end, then by triangle. One is a number, the other end
-/// times 2^32 plus 3 triangle + side: such numbers sort fast and take little memory.
+/// By insertion while they are few, as they are on any surface; all the way down and without branches, because wrong
+/// guesses would cost more.
+void sort_sides(std::span<LowSide> sides) {
+  constexpr std::size_t few = 16;
+  if (sides.size() > few) return std::sort(sides.begin(), sides.end());
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    auto least = sides[i].code;
+    for (auto j = i; j > 0; --j) {
+      const auto other = sides[j - 1].code;
+      const auto difference =
+          (least ^ other) & -static_cast<std::uint64_t>(other < least);  // if they are to be swapped
+      sides[j].code = other ^ difference;
+      least ^= difference;
+    }
+    sides[0].code = least;
+  }
+}
+
+/// The sides at each vertex that is their lower end.
 class SidesByEnds {
  public:
-  SidesByEnds(const std::vector<Triangle>& triangles, std::size_t vertex_count)
-      : offsets_(vertex_count + 1, 0), sides_(3 * triangles.size()) {
+  SidesByEnds(const std::vector<Triangle>& triangles, std::size_t vertex_count) : ends_(vertex_count + 1, 0) {
+    // A large page too many is gone again soon, and costs less than the many small ones of its part that is used.
+    sides_.reserve(fill_large_pages<LowSide>(3 * triangles.size()));
+    sides_.resize(3 * triangles.size());
+    // Filling moves each vertex's end from where its sides begin to where they end.
     for (const auto& [a, b, c] : triangles) {
-      for (const auto low : {std::min(a, b), std::min(b, c), std::min(c, a)}) offsets_[low + 1] += 1;
+      ends_[std::min(a, b) + 1] += 1;
+      ends_[std::min(b, c) + 1] += 1;
+      ends_[std::min(c, a) + 1] += 1;
     }
-    std::partial_sum(offsets_.begin(), offsets_.end(), offsets_.begin());
-    auto next = offsets_;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto [low, high] = std::minmax(triangles[t][k], triangles[t][(k + 1) % 3]);
-        sides_[next[low]++] = static_cast<std::uint64_t>(high) << 32 | (3 * t + k);
-      }
-    }
-    for (std::size_t v = 0; v < vertex_count; ++v) {
-      std::sort(sides_.begin() + offsets_[v], sides_.begin() + offsets_[v + 1]);
+    std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles.size()); ++t) {
+      const auto& [a, b, c] = triangles[t];
+      add(a, b, t, 0);
+      add(b, c, t, 1);
+      add(c, a, t, 2);
     }
   }
 
-  std::span<const std::uint64_t> of(std::size_t vertex) const {
-    return {sides_.data() + offsets_[vertex], sides_.data() + offsets_[vertex + 1]};
-  }
-  static std::int32_t high_end(std::uint64_t side) { return static_cast<std::int32_t>(side >> 32); }
-  static Side side(std::uint64_t side) {
-    const auto code = static_cast<std::uint32_t>(side);
-    return {static_cast<std::int32_t>(code / 3), static_cast<std::int8_t>(code % 3)};
+  /// In ascending order. To be asked for all vertices in turn.
+  std::span<const LowSide> sorted_at(std::size_t vertex) {
+    const std::span<LowSide> sides{sides_.data() + (vertex == 0 ? 0 : ends_[vertex - 1]),
+                                   sides_.data() + ends_[vertex]};
+    sort_sides(sides);
+    return sides;
   }
 
  private:
-  std::vector<std::int32_t> offsets_;
-  std::vector<std::uint64_t> sides_;
-};
-
-void join_sides(const Side& a, const Side& b, Topology& topology) {
-  topology.neighbours[a.triangle][a.side] = {b.triangle, b.side};
-  topology.neighbours[b.triangle][b.side] = {a.triangle, a.side};
-  const int along_a = topology.side_runs_along[a.triangle] >> a.side & 1;
-  const int along_b = topology.side_runs_along[b.triangle] >> b.side & 1;
-  if (along_a != along_b) return;
-  topology.side_runs_alike[a.triangle] |= static_cast<std::uint8_t>(1 << a.side);
-  topology.side_runs_alike[b.triangle] |= static_cast<std::uint8_t>(1 << b.side);
-}
-
-struct Corner {
-  std::int32_t triangle;
-  int corner;
-
-  bool operator==(const Corner&) const = default;
-};
-
-/// The corner of a side's triangle that lies at one of the side's ends.
-Corner corner_at(const std::vector<Triangle>& triangles, const Side& side, std::int32_t vertex) {
-  const int k = triangles[side.triangle][side.side] == vertex ? side.side : (side.side + 1) % 3;
-  return {side.triangle, k};
-}
-
-using Neighbours = std::vector<std::array<SideNeighbour, 3>>;
-
-/// Calls visit(corner) for all corners of the fan of triangles around a vertex, given one of them: across the sides
-/// that are joined, until a border or once round.
-template <class Visit>
-void visit_fan(const std::vector<Triangle>& triangles, const Neighbours& neighbours, const Corner& start,
-               const Visit& visit) {
-  const auto vertex = triangles[start.triangle][start.corner];
-  visit(start);
-  for (const int first : {start.corner, (start.corner + 2) % 3}) {
-    auto side = first;
-    for (auto t = start.triangle; neighbours[t][side].triangle >= 0;) {
-      const auto [next, m] = neighbours[t][side];
-      const auto corner = corner_at(triangles, {next, m}, vertex);
-      if (corner == start) return;
-      visit(corner);
-      t = next;
-      side = m == corner.corner ? (corner.corner + 2) % 3 : corner.corner;
-    }
+  void add(std::int32_t from, std::int32_t to, std::int32_t triangle, int side) {
+    const bool runs_along = from < to;
+    const auto low = runs_along ? from : to, high = runs_along ? to : from;
+    sides_[ends_[low]++] = {high, triangle, side, runs_along};
   }
-}
 
-/// An edge with more than two triangles.
-struct CutEdge {
-  std::array<std::int32_t, 2> ends;
-  std::vector<Side> sides;
+  std::vector<std::int32_t> ends_;
+  LargeArray<LowSide> sides_;
 };
 
-/// Joins those two triangles of a cut edge whose fans meet at both of its ends, before any are joined.
-void rejoin_slits(const std::vector<Triangle>& triangles, const std::vector<CutEdge>& cuts, Topology& topology) {
-  const auto share_fan = [&](const Side& a, const Side& b, std::int32_t vertex) {
-    const auto goal = corner_at(triangles, b, vertex);
-    bool is_met = false;
-    visit_fan(triangles, topology.neighbours, corner_at(triangles, a, vertex),
-              [&](const Corner& corner) { is_met = is_met || corner == goal; });
-    return is_met;
-  };
-  std::vector<std::array<Side, 2>> slits;
-  for (const auto& [ends, sides] : cuts) {
-    std::vector<bool> is_joined(sides.size(), false);
-    for (std::size_t i = 0; i < sides.size(); ++i) {
-      for (auto j = i + 1; j < sides.size(); ++j) {
-        if (is_joined[i] || is_joined[j]) continue;
-        if (!share_fan(sides[i], sides[j], ends[0]) || !share_fan(sides[i], sides[j], ends[1])) continue;
-        is_joined[i] = is_joined[j] = true;
-        slits.push_back({sides[i], sides[j]});
-      }
+template <class A, class B>
+void join_sides(const A& a, const B& b, bool run_alike, Topology& topology) {
+  topology.neighbours[a.triangle()][a.side()] = {b.triangle(), b.side(), run_alike};
+  topology.neighbours[b.triangle()][b.side()] = {a.triangle(), a.side(), run_alike};
+}
+
+/// Adds the edge that some sides are.
+void add_edge(std::int32_t low, std::span<const LowSide> sides, Topology& topology) {
+  const auto edge = static_cast<std::int32_t>(topology.edges.size());
+  topology.edges.push_back({low, sides[0].high_end()});
+  for (const auto& side : sides) topology.triangle_edges[side.triangle()][side.side()] = edge;
+  if (sides.size() <= 2) {
+    topology.edge_sides.push_back(4 * sides[0].triangle() + sides[0].side());
+    if (sides.size() == 2) {
+      join_sides(sides[0], sides[1], sides[0].runs_along() == sides[1].runs_along(), topology);
     }
+    return;
   }
-  for (const auto& [a, b] : slits) join_sides(a, b, topology);
+  topology.edge_sides.push_back(~static_cast<std::int32_t>(topology.cut_edges.size()));
+  auto& cut = topology.cut_edges.emplace_back(CutEdge{edge, {}});
+  for (const auto& side : sides) cut.sides.push_back(4 * side.triangle() + side.side());
 }
 
 }  // namespace
 
-Topology make_topology(const TriangleSoup& soup) {
-  const auto& triangles = soup.triangles;
-  const SidesByEnds sides(triangles, soup.vertices.size());
+Topology join_triangles(const TriangleSoup& soup) {
+  SidesByEnds sides(soup.triangles, soup.vertices.size());
   Topology topology;
-  topology.triangle_edges.resize(triangles.size());
-  topology.neighbours.resize(triangles.size());
-  topology.side_runs_along.resize(triangles.size());
-  topology.side_runs_alike.resize(triangles.size());
-  topology.edge_triangles.reserve(3 * triangles.size());
+  topology.triangle_edges = roomy_vector<std::array<std::int32_t, 3>>(soup.triangles.size(), {});
+  topology.neighbours = roomy_vector<std::array<PackedNeighbour, 3>>(soup.triangles.size(), {});
   // Half the sides, those at borders and cuts once more: the rest may grow.
-  const auto likely_edges = 3 * triangles.size() / 2 + soup.vertices.size() / 8;
-  topology.edges.reserve(likely_edges);
-  topology.edge_offsets.reserve(likely_edges + 1);
-  std::vector<CutEdge> cuts;
+  const auto likely_edges = 3 * soup.triangles.size() / 2 + soup.vertices.size() / 8;
+  topology.edges = roomy_vector<std::array<std::int32_t, 2>>(likely_edges);
+  topology.edge_sides = roomy_vector<std::int32_t>(likely_edges);
   for (std::int32_t low = 0; low < static_cast<std::int32_t>(soup.vertices.size()); ++low) {
-    const auto here = sides.of(low);
+    const auto here = sides.sorted_at(low);
     for (std::size_t first = 0, last = 0; first < here.size(); first = last) {
-      const auto high = SidesByEnds::high_end(here[first]);
-      const auto edge = static_cast<std::int32_t>(topology.edges.size());
-      topology.edges.push_back({low, high});
-      topology.edge_offsets.push_back(static_cast<std::int32_t>(topology.edge_triangles.size()));
-      for (; last < here.size() && SidesByEnds::high_end(here[last]) == high; ++last) {
-        const auto [t, k] = SidesByEnds::side(here[last]);
-        topology.triangle_edges[t][k] = edge;
-        topology.edge_triangles.push_back(t);
-        topology.side_runs_along[t] |= static_cast<std::uint8_t>((triangles[t][k] == low) << k);
-      }
-      if (last - first == 2) join_sides(SidesByEnds::side(here[first]), SidesByEnds::side(here[first + 1]), topology);
-      if (last - first > 2) {
-        topology.cut_edges.push_back(edge);
-        auto& cut = cuts.emplace_back(CutEdge{{low, high}, {}});
-        for (auto i = first; i < last; ++i) cut.sides.push_back(SidesByEnds::side(here[i]));
-      }
+      while (last < here.size() && here[last].high_end() == here[first].high_end()) ++last;
+      add_edge(low, here.subspan(first, last - first), topology);
     }
   }
-  topology.edge_offsets.push_back(static_cast<std::int32_t>(topology.edge_triangles.size()));
-  rejoin_slits(triangles, cuts, topology);
   return topology;
 }
 
-TriangleSoup split_vertices(TriangleSoup soup, const Topology& topology) {
-  auto& triangles = soup.triangles;
+std::vector<std::int32_t> likely_repetitions(const Topology& topology) {
+  std::vector<std::int32_t> likely;
+  for (std::size_t t = 0; t < topology.neighbours.size(); ++t) {
+    const auto& [a, b, c] = topology.neighbours[t];
+    const auto alike = [](PackedNeighbour x, PackedNeighbour y) { return x.triangle() == y.triangle() && x.exists(); };
+    if (alike(a, b) || alike(b, c) || alike(c, a)) likely.push_back(static_cast<std::int32_t>(t));
+  }
+  for (const auto& cut : topology.cut_edges) {
+    for (const auto side : cut.sides) likely.push_back(side >> 2);
+  }
+  std::sort(likely.begin(), likely.end());
+  likely.erase(std::unique(likely.begin(), likely.end()), likely.end());
+  return likely;
+}
+
+Topology rejoin_slits(Topology topology, const TriangleSoup& soup) {
+  struct Slit {
+    FanSide a, b;
+  };
+  std::vector<Slit> slits;  // to be joined in the end: fans are looked at before any are
+  for (const auto& [edge, sides] : topology.cut_edges) {
+    const auto low = topology.edges[edge][0];
+    const auto at = [&](std::size_t i, bool at_low) {
+      const FanSide side{sides[i] >> 2, sides[i] & 3, true};
+      const bool leaves_low = soup.triangles[side.triangle()][side.side()] == low;
+      return FanSide{side.triangle(), side.side(), leaves_low == at_low};
+    };
+    const auto share_fans = [&](std::size_t i, std::size_t j) {
+      for (const bool at_low : {true, false}) {
+        bool is_met = false;
+        const auto goal = at(j, at_low).corner();
+        visit_fan(topology.neighbours, at(i, at_low).corner(),
+                  [&](const Corner& corner) { is_met = is_met || corner == goal; });
+        if (!is_met) return false;
+      }
+      return true;
+    };
+    std::vector<bool> is_joined(sides.size(), false);
+    for (std::size_t i = 0; i < sides.size(); ++i) {
+      for (auto j = i + 1; j < sides.size(); ++j) {
+        if (is_joined[i] || is_joined[j] || !share_fans(i, j)) continue;
+        is_joined[i] = is_joined[j] = true;
+        slits.push_back({at(i, true), at(j, true)});
+      }
+    }
+  }
+  for (const auto& [a, b] : slits) join_sides(a, b, a.leaves() == b.leaves(), topology);
+  return topology;
+}
+
+SplitSoup split_vertices(TriangleSoup soup, const Topology& topology) {
+  SplitSoup result{std::move(soup), {}};
+  auto& triangles = result.soup.triangles;
+  auto& vertices = result.soup.vertices;
+  auto& input_vertex = result.soup.input_vertex;
+  if (has_one_fan_everywhere(triangles, topology.neighbours, vertices.size())) return result;
+  input_vertex = written_out(std::move(input_vertex), vertices.size());
   std::vector<std::uint8_t> seen(triangles.size(), 0);  // a bit for each corner
-  std::vector<bool> taken(soup.vertices.size(), false);
+  std::vector<bool> taken(vertices.size(), false);
   std::vector<Corner> fan;
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles.size()); ++t) {
     for (int k = 0; k < 3; ++k) {
       if (seen[t] >> k & 1) continue;
       const auto vertex = triangles[t][k];
       fan.clear();
-      visit_fan(triangles, topology.neighbours, {t, k}, [&](const Corner& corner) {
+      visit_fan(topology.neighbours, {t, k}, [&](const Corner& corner) {
         seen[corner.triangle] |= static_cast<std::uint8_t>(1 << corner.corner);
         fan.push_back(corner);
       });
@@ -184,14 +206,31 @@ TriangleSoup split_vertices(TriangleSoup soup, const Topology& topology) {
         taken[vertex] = true;
         continue;
       }
-      const auto copy = static_cast<std::int32_t>(soup.vertices.size());
+      const auto copy = static_cast<std::int32_t>(vertices.size());
       for (const auto& [triangle, corner] : fan) triangles[triangle][corner] = copy;
-      soup.vertices.push_back(Vec3(soup.vertices[vertex]));
-      soup.input_vertex.push_back(std::int32_t(soup.input_vertex[vertex]));
-      soup.repairs.split_vertices.push_back(soup.input_vertex[vertex]);
+      vertices.push_back(Vec3(vertices[vertex]));
+      input_vertex.push_back(std::int32_t(input_vertex[vertex]));
+      result.soup.repairs.split_vertices.push_back(input_vertex[vertex]);
+      result.copied_vertices.push_back(vertex);
     }
   }
-  return soup;
+  return result;
+}
+
+void reverse_triangle(std::int32_t t, std::vector<Triangle>& triangles, Topology& topology) {
+  auto& neighbours = topology.neighbours[t];
+  auto& edges = topology.triangle_edges[t];
+  std::swap(triangles[t][1], triangles[t][2]);
+  std::swap(edges[0], edges[2]);
+  std::swap(neighbours[0], neighbours[2]);
+  for (int k = 0; k < 3; ++k) {
+    auto& first = topology.edge_sides[edges[k]];
+    if (first >= 0 && first >> 2 == t) first = 4 * t + k;
+    const auto across = neighbours[k];
+    if (!across.exists()) continue;
+    neighbours[k] = {across.triangle(), across.side(), !across.runs_alike()};
+    topology.neighbours[across.triangle()][across.side()] = {t, k, !across.runs_alike()};
+  }
 }
 
 }  // namespace pectinate::detail

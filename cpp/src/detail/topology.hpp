@@ -9,24 +9,41 @@
 
 namespace pectinate::detail {
 
+/// An edge with more than two triangles, and those of their sides that are it: 4 triangle + side, in ascending order.
+struct CutEdge {
+  std::int32_t edge;
+  std::vector<std::int32_t> sides;
+};
+
 /// How the triangles of a soup hang together: geometric edges, and which sides are joined into a surface.
 struct Topology {
   std::vector<std::array<std::int32_t, 2>> edges;  ///< soup vertices, the smaller first
   std::vector<std::array<std::int32_t, 3>> triangle_edges;
-  std::vector<std::int32_t> edge_offsets, edge_triangles;
-  std::vector<std::array<SideNeighbour, 3>> neighbours;
-  /// Per triangle, a bit for each side: it runs from the first end of its edge to the second; it runs the same way
-  /// round as the side that it is joined to, so that one of the two triangles must be reversed.
-  std::vector<std::uint8_t> side_runs_along, side_runs_alike;
-  std::vector<std::int32_t> cut_edges;  ///< edges with more than two triangles
+  std::vector<std::int32_t> edge_sides;  ///< 4 triangle + side of an edge's first triangle; where it was cut, ~ its
+                                         ///< number in cut_edges
+  std::vector<CutEdge> cut_edges;
+  std::vector<std::array<PackedNeighbour, 3>> neighbours;
 };
 
-/// Joins the sides of every edge that has two triangles. Edges with more are cut open, except for two triangles that
-/// stay joined through fans at both ends: a slit whose lips share both end vertices would be no surface.
-Topology make_topology(const TriangleSoup& soup);
+/// Joins the sides of every edge that has two triangles. Edges with more are cut open.
+Topology join_triangles(const TriangleSoup& soup);
+
+/// Every triangle that may have the same corners as another, in ascending order: such ones share all three edges.
+std::vector<std::int32_t> likely_repetitions(const Topology& topology);
+
+/// Joins two triangles of a cut edge that are connected through fans at both ends: a slit whose lips share both end
+/// vertices would be no surface.
+Topology rejoin_slits(Topology topology, const TriangleSoup& soup);
 
 /// Gives every fan of triangles its own copy of its vertex: the first keeps the index, copies go to the end.
-/// Records them in `soup.repairs.split_vertices`.
-TriangleSoup split_vertices(TriangleSoup soup, const Topology& topology);
+/// Records them in `soup.repairs.split_vertices`. Returns the vertices that were copied, in order.
+struct SplitSoup {
+  TriangleSoup soup;
+  std::vector<std::int32_t> copied_vertices;
+};
+SplitSoup split_vertices(TriangleSoup soup, const Topology& topology);
+
+/// Swaps corners 1 and 2 of a triangle.
+void reverse_triangle(std::int32_t t, std::vector<Triangle>& triangles, Topology& topology);
 
 }  // namespace pectinate::detail

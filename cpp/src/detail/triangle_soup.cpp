@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <string>
 
 #include "detail/buckets.hpp"
+#include "detail/large_array.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/errors.hpp"
 
@@ -28,30 +30,105 @@ void check_sizes(std::size_t vertex_count, std::size_t triangle_count) {
   }
 }
 
-void check_indices(std::span<const Triangle> triangles, std::size_t vertex_count) {
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (const auto v : triangles[t]) {
-      if (v < 0 || static_cast<std::size_t>(v) >= vertex_count) {
-        throw InvalidMesh("triangle " + std::to_string(t) + " refers to vertex " + std::to_string(v) +
-                          ", but vertices are numbered from 0 to " + std::to_string(vertex_count) +
-                          " - 1; correct the index or shift it to start at 0");
-      }
-    }
+void check_indices(const Triangle& triangle, std::size_t t, std::size_t vertex_count) {
+  for (const auto v : triangle) {
+    if (v >= 0 && static_cast<std::size_t>(v) < vertex_count) continue;
+    throw InvalidMesh("triangle " + std::to_string(t) + " refers to vertex " + std::to_string(v) +
+                      ", but vertices are numbered from 0 to " + std::to_string(vertex_count) +
+                      " - 1; correct the index or shift it to start at 0");
   }
 }
 
-bool is_degenerate(const Triangle& t, std::span<const Vec3> vertices) {
-  if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) return true;
+/// NaN where the triangle is degenerate, which it also is where a corner is not finite or is repeated.
+double measure_area(const Triangle& t, std::span<const Vec3> vertices) {
   const Vector a = vector(vertices[t[1]]) - vector(vertices[t[0]]);
   const Vector b = vector(vertices[t[2]]) - vector(vertices[t[0]]);
-  const double longest = std::max({a.squaredNorm(), b.squaredNorm(), (b - a).squaredNorm()});
+  const double longest = std::max(std::max(a.squaredNorm(), b.squaredNorm()), (b - a).squaredNorm());
   const double twice_area = a.cross(b).norm();
-  return !(twice_area > least_relative_height * longest && std::isfinite(twice_area));
+  const bool is_usable = twice_area > least_relative_height * longest && std::isfinite(twice_area);
+  return is_usable ? twice_area / 2 : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Of triangles with the same three corners, all but the first.
-std::vector<std::int32_t> find_repetitions(std::span<const Triangle> triangles, std::size_t vertex_count,
-                                           const std::vector<std::int32_t>& candidates) {
+/// Rows without some of them, which are given in ascending order.
+template <class Row>
+std::vector<Row> without(std::vector<Row> rows, const std::vector<std::int32_t>& dropped) {
+  auto next = dropped.begin();
+  std::size_t kept = dropped[0];
+  for (auto i = kept; i < rows.size(); ++i) {
+    if (next != dropped.end() && static_cast<std::size_t>(*next) == i) {
+      ++next;
+    } else {
+      rows[kept++] = rows[i];
+    }
+  }
+  rows.resize(kept);
+  return rows;
+}
+
+TriangleSoup without_triangles(TriangleSoup soup, const std::vector<std::int32_t>& dropped) {
+  if (dropped.empty()) return soup;
+  soup.input_triangle = without(written_out(std::move(soup.input_triangle), soup.triangles.size()), dropped);
+  soup.triangles = without(std::move(soup.triangles), dropped);
+  soup.areas = without(std::move(soup.areas), dropped);
+  return soup;
+}
+
+/// The valid triangles, of the input's vertices.
+TriangleSoup select_triangles(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+  TriangleSoup soup;
+  soup.triangles = roomy_vector<Triangle>(triangles.size());
+  soup.triangles.assign(triangles.begin(), triangles.end());
+  soup.areas = roomy_vector<double>(triangles.size());
+  std::vector<std::int32_t> dropped;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    check_indices(triangles[t], t, vertices.size());
+    soup.areas.push_back(measure_area(triangles[t], vertices));
+    if (std::isnan(soup.areas.back())) dropped.push_back(static_cast<std::int32_t>(t));
+  }
+  for (const auto t : dropped) {
+    const auto& corners = triangles[t];
+    const bool are_finite = std::all_of(corners.begin(), corners.end(), [&](auto v) { return is_finite(vertices[v]); });
+    (are_finite ? soup.repairs.degenerate_triangles : soup.repairs.non_finite_triangles).push_back(t);
+  }
+  return without_triangles(std::move(soup), dropped);
+}
+
+/// The vertices that triangles use, and the triangles with their new numbers.
+TriangleSoup with_used_vertices(TriangleSoup soup, std::span<const Vec3> vertices) {
+  std::vector<std::uint8_t> is_used(vertices.size(), 0);
+  for (const auto& [a, b, c] : soup.triangles) is_used[a] = is_used[b] = is_used[c] = 1;
+  if (std::ranges::find(is_used, 0) == is_used.end()) {
+    soup.vertices = roomy_vector<Vec3>(vertices.size());
+    soup.vertices.assign(vertices.begin(), vertices.end());
+    return soup;
+  }
+  std::vector<std::int32_t> compact(vertices.size());
+  for (std::int32_t v = 0; v < static_cast<std::int32_t>(vertices.size()); ++v) {
+    if (is_used[v]) {
+      compact[v] = static_cast<std::int32_t>(soup.vertices.size());
+      soup.vertices.push_back(vertices[v]);
+      soup.input_vertex.push_back(v);
+    } else {
+      (is_finite(vertices[v]) ? soup.repairs.unreferenced_vertices : soup.repairs.non_finite_vertices).push_back(v);
+    }
+  }
+  for (auto& triangle : soup.triangles) {
+    for (auto& corner : triangle) corner = compact[corner];
+  }
+  return soup;
+}
+
+}  // namespace
+
+std::vector<std::int32_t> written_out(std::vector<std::int32_t> input, std::size_t count) {
+  if (!input.empty()) return input;
+  input.resize(count);
+  std::iota(input.begin(), input.end(), 0);
+  return input;
+}
+
+std::vector<std::int32_t> find_repetitions(const TriangleSoup& soup, const std::vector<std::int32_t>& candidates) {
+  if (candidates.empty()) return {};
   struct Corners {
     std::uint64_t others;  // the two greater ones
     std::int32_t least, triangle;
@@ -59,13 +136,13 @@ std::vector<std::int32_t> find_repetitions(std::span<const Triangle> triangles, 
   std::vector<Corners> all;
   all.reserve(candidates.size());
   for (const auto t : candidates) {
-    auto sorted = triangles[t];
+    auto sorted = soup.triangles[t];
     std::sort(sorted.begin(), sorted.end());
     const auto others = static_cast<std::uint64_t>(sorted[1]) << 32 | static_cast<std::uint64_t>(sorted[2]);
     all.push_back({others, sorted[0], t});
   }
   std::vector<std::int32_t> repeated;
-  Buckets<Corners> by_least(all, vertex_count, [](const Corners& corners) { return corners.least; });
+  Buckets<Corners> by_least(all, soup.vertices.size(), [](const Corners& corners) { return corners.least; });
   for (std::size_t v = 0; v < by_least.count(); ++v) {
     const auto bucket = by_least.bucket(v);
     std::sort(bucket.begin(), bucket.end(), [](const Corners& a, const Corners& b) {
@@ -79,63 +156,19 @@ std::vector<std::int32_t> find_repetitions(std::span<const Triangle> triangles, 
   return repeated;
 }
 
-/// Sorts the triangles into kept and dropped; returns the kept ones.
-std::vector<std::int32_t> select_triangles(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                                           MeshRepairs& repairs) {
-  std::vector<std::int32_t> valid;
-  valid.reserve(triangles.size());
-  for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles.size()); ++t) {
-    const auto& corners = triangles[t];
-    if (!std::all_of(corners.begin(), corners.end(), [&](auto v) { return is_finite(vertices[v]); })) {
-      repairs.non_finite_triangles.push_back(t);
-    } else if (is_degenerate(corners, vertices)) {
-      repairs.degenerate_triangles.push_back(t);
-    } else {
-      valid.push_back(t);
-    }
-  }
-  repairs.duplicate_triangles = find_repetitions(triangles, vertices.size(), valid);
-  std::vector<std::int32_t> kept;
-  kept.reserve(valid.size());
-  std::set_difference(valid.begin(), valid.end(), repairs.duplicate_triangles.begin(),
-                      repairs.duplicate_triangles.end(), std::back_inserter(kept));
-  return kept;
-}
-
-}  // namespace
-
 TriangleSoup clean_triangle_soup(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
   check_sizes(vertices.size(), triangles.size());
-  check_indices(triangles, vertices.size());
-  TriangleSoup soup;
-  soup.input_triangle = select_triangles(vertices, triangles, soup.repairs);
-  if (soup.input_triangle.empty()) {
+  auto soup = select_triangles(vertices, triangles);
+  if (soup.triangles.empty()) {
     throw InvalidMesh("none of the " + std::to_string(triangles.size()) +
                       " triangles is valid (finite, with an area); check the coordinates and the indices");
   }
+  return with_used_vertices(std::move(soup), vertices);
+}
 
-  soup.vertices.reserve(vertices.size());
-  soup.input_vertex.reserve(vertices.size());
-  constexpr std::int32_t unused = -1;
-  std::vector<std::int32_t> compact(vertices.size(), unused);
-  for (const auto t : soup.input_triangle) {
-    for (const auto v : triangles[t]) compact[v] = 0;
-  }
-  for (std::int32_t v = 0; v < static_cast<std::int32_t>(vertices.size()); ++v) {
-    if (compact[v] != unused) {
-      compact[v] = static_cast<std::int32_t>(soup.vertices.size());
-      soup.vertices.push_back(vertices[v]);
-      soup.input_vertex.push_back(v);
-    } else {
-      (is_finite(vertices[v]) ? soup.repairs.unreferenced_vertices : soup.repairs.non_finite_vertices).push_back(v);
-    }
-  }
-  soup.triangles.reserve(soup.input_triangle.size());
-  for (const auto t : soup.input_triangle) {
-    const auto& corners = triangles[t];
-    soup.triangles.push_back({compact[corners[0]], compact[corners[1]], compact[corners[2]]});
-  }
-  return soup;
+TriangleSoup drop_repetitions(TriangleSoup soup, const std::vector<std::int32_t>& repetitions) {
+  for (const auto t : repetitions) soup.repairs.duplicate_triangles.push_back(input_index(soup.input_triangle, t));
+  return without_triangles(std::move(soup), repetitions);
 }
 
 }  // namespace pectinate::detail

@@ -13,12 +13,26 @@ namespace pectinate::detail {
 struct TriangleSoup {
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
-  std::vector<std::int32_t> input_vertex, input_triangle;
-  MeshRepairs repairs;  ///< what was dropped
+  std::vector<double> areas;
+  std::vector<std::int32_t> input_vertex, input_triangle;  ///< empty where they count up
+  MeshRepairs repairs;                                     ///< what was dropped
 };
 
-/// Drops triangles with non-finite corners, degenerate ones and exact repetitions, then vertices that nothing uses.
+inline std::int32_t input_index(const std::vector<std::int32_t>& input, std::int32_t i) {
+  return input.empty() ? i : input[i];
+}
+
+/// With numbers where it was empty.
+std::vector<std::int32_t> written_out(std::vector<std::int32_t> input, std::size_t count);
+
+/// Drops triangles with non-finite corners and degenerate ones, then vertices that nothing uses.
 /// Throws InvalidMesh for an index out of range or when nothing is left.
 TriangleSoup clean_triangle_soup(std::span<const Vec3> vertices, std::span<const Triangle> triangles);
+
+/// Among some triangles of a soup, in ascending order, all but the first of those with the same three corners.
+std::vector<std::int32_t> find_repetitions(const TriangleSoup& soup, const std::vector<std::int32_t>& candidates);
+
+/// Without triangles that are exact repetitions of others that stay.
+TriangleSoup drop_repetitions(TriangleSoup soup, const std::vector<std::int32_t>& repetitions);
 
 }  // namespace pectinate::detail
