@@ -95,6 +95,12 @@ class SurfaceMesh {
     const auto& corners = triangles_[triangle];
     return uncopied(corners[side]) < uncopied(corners[side == 2 ? 0 : side + 1]);
   }
+  /// The same for all three sides, by bit.
+  unsigned sides_running_along(std::int32_t triangle) const {
+    const auto& corners = triangles_[triangle];
+    const auto a = uncopied(corners[0]), b = uncopied(corners[1]), c = uncopied(corners[2]);
+    return static_cast<unsigned>(a < b) | static_cast<unsigned>(b < c) << 1 | static_cast<unsigned>(c < a) << 2;
+  }
   SideNeighbour neighbour(std::int32_t triangle, int side) const { return neighbours_[triangle][side].unpacked(); }
 
   const std::vector<double>& triangle_areas() const { return areas_; }

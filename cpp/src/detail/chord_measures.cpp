@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 #include "detail/chord_measures.hpp"
 
+#include <cstdint>
+#include <limits>
+
 namespace pectinate::detail {
 
 #define PECTINATE_KERNEL "detail/chord_measures_lanes.inl"

@@ -10,12 +10,12 @@ namespace pectinate::detail {
 /// So many triangles are measured together.
 inline constexpr int measured_lanes = 4;
 
-/// Triangles with unit normals and orientations in their planes.
+/// Triangles with orientations in their planes.
 struct Faces {
   using Places = std::array<const Vec3*, measured_lanes>;
 
   std::array<Places, 3> corners;
-  Places normals, directions;
+  Places directions;
 };
 
 /// How orientations stand to their triangles, whose sides begin at the corners of the same number; by triangle.

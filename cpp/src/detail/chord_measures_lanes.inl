@@ -1,35 +1,11 @@
 // SPDX-License-Identifier: MIT
 // What chord_measures.cpp compiles once for each kind of processor, whose registers hold `doubles` numbers.
 
-using Lanes = double __attribute__((vector_size(doubles * sizeof(double))));
-using Mask = decltype(Lanes{} < Lanes{});
+#include "detail/lane_vectors.inl"
 
 /// Keeps chords apart from sides in triangles so thin that no orientation is away from all of them.
 constexpr double least_split = 1e-12;
 
-struct LaneVector {
-  Lanes x, y, z;
-};
-inline LaneVector operator-(const LaneVector& a, const LaneVector& b) {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-inline LaneVector cross(const LaneVector& a, const LaneVector& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline Lanes dot(const LaneVector& a, const LaneVector& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-inline Lanes all(double value) {
-  return Lanes{} + value;
-}
-inline Lanes magnitude(const Lanes& a) {
-  return a < 0 ? -a : a;
-}
-inline Lanes root(const Lanes& a) {
-  Lanes result;
-  for (int i = 0; i < doubles; ++i) result[i] = __builtin_sqrt(a[i]);
-  return result;
-}
 /// One bit for each lane.
 inline unsigned bits(const Mask& mask) {
   unsigned result = 0;
@@ -37,14 +13,6 @@ inline unsigned bits(const Mask& mask) {
   return result;
 }
 
-template <class Value>
-inline Lanes lanes(const Value& value) {
-  if constexpr (doubles == 4) {
-    return Lanes{value(0), value(1), value(2), value(3)};
-  } else {
-    return Lanes{value(0), value(1)};
-  }
-}
 /// Of the lanes from `first` on.
 inline LaneVector load(const Faces::Places& places, int first) {
   const auto coordinate = [&](int k) { return lanes([&](int lane) { return (*places[first + lane])[k]; }); };
@@ -62,8 +30,9 @@ inline Lanes choose(const Mask& is_first, const Mask& is_second, const std::arra
 inline void measure(const Faces& faces, int first, ChordMeasures& result) {
   const LaneVector a = load(faces.corners[0], first), b = load(faces.corners[1], first);
   const LaneVector c = load(faces.corners[2], first), along = load(faces.directions, first);
-  const LaneVector across = cross(load(faces.normals, first), along);
   const std::array<LaneVector, 3> sides = {b - a, c - b, a - c};
+  const LaneVector upwards = cross(sides[0], c - a);
+  const LaneVector across = cross(upwards / root(dot(upwards, upwards)), along);
   std::array<Lanes, 3> rise, run, size;
   Mask is_close = all(1) < 0;
   for (int k = 0; k < 3; ++k) {

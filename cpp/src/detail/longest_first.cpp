@@ -2,6 +2,8 @@
 #include "detail/longest_first.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -196,10 +198,9 @@ class LongestFirst {
     return true;
   }
 
+  /// Of equilateral triangles that take as much area.
   double mean_edge_length() const {
-    double sum = 0;
-    for (const double length : mesh_.edge_lengths()) sum += length;
-    return sum / static_cast<double>(mesh_.edge_lengths().size());
+    return std::sqrt(4 / std::numbers::sqrt3 * mesh_.area() / static_cast<double>(mesh_.triangle_count()));
   }
 
   /// Drops what is of no use any more, where it takes much room.

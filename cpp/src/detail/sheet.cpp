@@ -31,13 +31,15 @@ Vector turned_away(const Vector& direction, const Vector& side, const Vector& no
 }
 
 /// A triangle's orientation, turned away from all sides that it is parallel to.
-Vec3 turned_away(const std::array<const Vec3*, 3>& corners, const Vec3& normal, const Vec3& direction) {
+Vec3 turned_away(const SurfaceMesh& mesh, std::int32_t triangle, const Vec3& direction) {
+  const auto& corners = mesh.triangles()[triangle];
+  const Vector normal = vector(mesh.triangle_normal(triangle));
   Vector along = vector(direction);
   for (int k = 0; k < 3; ++k) {
-    const Vector side = vector(*corners[(k + 1) % 3]) - vector(*corners[k]);
-    const Vector across = vector(normal).cross(along);
+    const Vector side = vector(mesh.vertices()[corners[(k + 1) % 3]]) - vector(mesh.vertices()[corners[k]]);
+    const Vector across = normal.cross(along);
     if (std::abs(side.dot(across)) >= least_angle_to_side * std::abs(side.dot(along))) continue;
-    along = turned_away(along, side, vector(normal));
+    along = turned_away(along, side, normal);
   }
   return vec3(along);
 }
@@ -83,14 +85,11 @@ class SheetMaker {
   /// Fewer than a full set of lanes are filled up with the last one.
   void measure(std::int32_t first, std::int32_t count) {
     Faces faces;
-    std::array<Vec3, measured_lanes> normals;
     for (std::int32_t lane = 0; lane < measured_lanes; ++lane) {
       const auto t = first + std::min(lane, count - 1);
       prefetch(t + measured_ahead);
       const auto& corners = mesh_.triangles()[t];
       for (int k = 0; k < 3; ++k) faces.corners[k][lane] = &mesh_.vertices()[corners[k]];
-      normals[lane] = mesh_.triangle_normal(t);
-      faces.normals[lane] = &normals[lane];
       faces.directions[lane] = &field_.directions()[t];
     }
     auto measures = measure_chords(faces);
@@ -102,8 +101,7 @@ class SheetMaker {
     std::array<Vec3, measured_lanes> turned;
     for (std::int32_t lane = 0; lane < count; ++lane) {
       if (!(along_sides >> lane & 1) || !field_.has_direction(first + lane)) continue;
-      turned[lane] = turned_away({faces.corners[0][lane], faces.corners[1][lane], faces.corners[2][lane]},
-                                 *faces.normals[lane], *faces.directions[lane]);
+      turned[lane] = turned_away(mesh_, first + lane, *faces.directions[lane]);
       faces.directions[lane] = &turned[lane];
     }
     return measure_chords(faces);
@@ -119,6 +117,7 @@ class SheetMaker {
     const auto& order = orders[m];
     static constexpr double signs[2] = {-1, 1};
     const auto& corners = mesh_.triangles()[t];
+    const unsigned sides_running_along = mesh_.sides_running_along(t);
     const auto* const vertex_ranks = vertex_ranks_.data();
     const auto* const ranks = sheet_.ranks.data();
     const auto i = ranks[t];
@@ -127,8 +126,8 @@ class SheetMaker {
     SideCosines cosines;
     for (const auto role : {low_high, low_middle, middle_high}) {
       const int k = order[role];
-      const auto& across = mesh_.neighbour(t, k);
-      const bool runs_along = mesh_.runs_along(t, k);
+      const auto across = mesh_.neighbour(t, k);
+      const unsigned runs_along = sides_running_along >> k & 1;
       vertices[role] = vertex_ranks[corners[k]];
       neighbours[role] = across.triangle < 0 ? -1 : ranks[across.triangle];
       const double cosine = measures.cosine[k][lane];
