@@ -11,8 +11,8 @@ namespace {
 constexpr auto mesh_doc = R"(A triangulated surface made of any triangle soup; immutable.
 
 It is cut open where it is no manifold, consistently oriented where it can be, outwards where there is an outside.
-Kept triangles stay in input order; `repairs` lists what was changed. Arrays are read-only views; `edge_lengths` and
-`triangle_normals` are computed at every access, so keep them while you need them.
+Kept triangles stay in input order; `repairs` lists what was changed. Arrays are read-only views; `edge_lengths`,
+`triangle_normals`, `input_vertex` and `input_triangle` are computed at every access, so keep them while you need them.
 
 Parameters
 ----------
