@@ -1,4 +1,4 @@
-"""How the placement scales: against its floor, in triangles, in d_sep, in threads, in memory, and on hard cases.
+"""How the placement scales: against its floor, in triangles, in d_sep, in threads, in memory, on hard cases, polished.
 
 `python benchmarks/engine.py --part NAME` prints one table; see `README.md` for what is measured.
 """
@@ -35,6 +35,9 @@ FINER = [SurfaceSource(edge_length=1.0), SurfaceSource(edge_length=0.5)]
 FINER += [SurfaceSource(edge_length=0.25, refinements=refinements) for refinements in (0, 1)]
 MORE = [SurfaceSource(edge_length=1.0, copies=copies) for copies in (1, 4, 16, 64)]
 FINER_MEASURED = [SurfaceSource(file=LA_EPI.file, refinements=refinements) for refinements in (0, 1, 2)]
+POLISHED = [SurfaceSource(file=f"human_atrium_1/{name}.pts") for name in ("la_epi", "la_endo", "ra_epi")]
+POLISHED += [SurfaceSource(shape="torus")]
+POLISHING_SECONDS = (1, 3, 10, 30)
 EDGES_PER_SEPARATION = (0.25, 0.5, 1, 1.6, 2.5, 4, 6, 10, 16, 30)
 PLACEMENT = ("placement",)
 BEFORE_PLACEMENT = ("mesh", "field")
@@ -253,6 +256,38 @@ def print_hard(bench: Bench) -> None:
     )
 
 
+# Polishing -----------------------------------------------------------------------------------------------------------
+
+
+def print_polishing(bench: Bench) -> None:
+    """How much longer streamlines get in so many seconds."""
+    columns = ["n", "L_avg mm", "gain", "weighted mm", "d_avg/d_sep", "short", *CHECKED.values()]
+    lines = []
+    for surface in POLISHED:
+        arrays = read_surface(surface)
+        for separation in (0.8, 1.6, 3.2):
+            for method in (DEFAULT, HYSTERESIS):
+                methods = [method, *(f"{method}, polishing_time={seconds}" for seconds in POLISHING_SECONDS)]
+                rows = bench.rows(surface, arrays, separation, methods)
+                for row, seconds in zip(rows, (0, *POLISHING_SECONDS), strict=True):
+                    cells = _polishing_cells(row, rows[0])
+                    lines.append([str(surface), f"{separation:g}", method, str(seconds), *cells])
+    print(align(["surface", "d_sep mm", "method", "s", *columns], lines, left=1))
+
+
+def _polishing_cells(row: Row, unpolished: Row) -> list[str]:
+    quality, checked = row.quality, row.checked
+    return [
+        f"{quality['n']:.0f}",
+        f"{quality['mean_length']:.2f}",
+        f"{quality['mean_length'] / unpolished.quality['mean_length'] - 1:+.1%}",
+        f"{quality['length_weighted_mean']:.2f}",
+        f"{quality['mean_spacing_ratio']:.3f}",
+        f"{quality['short_fraction']:.1%}",
+        *(f"{checked[name]:.4f}" if checked else "" for name in CHECKED),
+    ]
+
+
 # The smallest ---------------------------------------------------------------------------------------------------------
 
 
@@ -276,6 +311,7 @@ PARTS: dict[str, Callable[[Bench], None]] = {
     "threads": print_threads,
     "rectangle": print_rectangle,
     "hard": print_hard,
+    "polishing": print_polishing,
 }
 
 

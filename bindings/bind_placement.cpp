@@ -61,7 +61,8 @@ void bind_statistics(py::module_& module) {
       .def_readonly("mean_spacing_ratio", &Statistics::mean_spacing_ratio)
       .def_readonly("short_fraction", &Statistics::short_fraction)
       .def_readonly("coverage", &Statistics::coverage)
-      .def_readonly("stop_counts", &Statistics::stop_counts);
+      .def_readonly("stop_counts", &Statistics::stop_counts)
+      .def_readonly("polishing_rounds", &Statistics::polishing_rounds);
   module.def(
       "length_histogram",
       [](const py::array_t<double, py::array::c_style | py::array::forcecast>& lengths, int bin_count) {
@@ -85,6 +86,8 @@ void bind_result(py::module_& module) {
       .def_readonly("minimum_length", &PlacementOptions::minimum_length)
       .def_readonly("close_loops", &PlacementOptions::close_loops)
       .def_readonly("singularity_radius", &PlacementOptions::singularity_radius)
+      .def_readonly("polishing_rounds", &PlacementOptions::polishing_rounds)
+      .def_readonly("polishing_time", &PlacementOptions::polishing_time)
       .def_readonly("abrupt_turn_angle", &PlacementOptions::abrupt_turn_angle)
       .def_readonly("max_steps", &PlacementOptions::max_steps)
       .def_readonly("random_seed", &PlacementOptions::random_seed)
@@ -109,47 +112,54 @@ void bind_types(py::module_& module) {
   bind_result(module);
 }
 
+/// Every option is an argument of its own, and so a misspelt one an error.
+constexpr auto place = [](const SurfaceMesh& mesh, const OrientationField& field, double separation_distance,
+                          std::vector<double> separation_distances, PlacementMethod method, OccupancyModel occupancy,
+                          int seed_count, double seed_distance_factor, double seed_clearance, double test_distance,
+                          double minimum_length, bool close_loops, double singularity_radius,
+                          std::int64_t polishing_rounds, double polishing_time, double abrupt_turn_angle,
+                          std::int64_t max_steps, std::uint64_t random_seed, int thread_count,
+                          const py::object& progress) {
+  const PlacementOptions options{separation_distance,
+                                 std::move(separation_distances),
+                                 method,
+                                 occupancy,
+                                 seed_count,
+                                 seed_distance_factor,
+                                 seed_clearance,
+                                 test_distance,
+                                 minimum_length,
+                                 close_loops,
+                                 singularity_radius,
+                                 polishing_rounds,
+                                 polishing_time,
+                                 abrupt_turn_angle,
+                                 max_steps,
+                                 random_seed,
+                                 thread_count,
+                                 with_signals(progress)};
+  const py::gil_scoped_release release;
+  return place_streamlines(mesh, field, options);
+};
+
 }  // namespace
 
 void bind_placement(py::module_& module) {
   bind_types(module);
   const PlacementOptions defaults;
-  module.def(
-      "place_streamlines",
-      [](const SurfaceMesh& mesh, const OrientationField& field, double separation_distance,
-         std::vector<double> separation_distances, PlacementMethod method, OccupancyModel occupancy, int seed_count,
-         double seed_distance_factor, double seed_clearance, double test_distance, double minimum_length,
-         bool close_loops, double singularity_radius, double abrupt_turn_angle, std::int64_t max_steps,
-         std::uint64_t random_seed, int thread_count, const py::object& progress) {
-        const PlacementOptions options{separation_distance,
-                                       std::move(separation_distances),
-                                       method,
-                                       occupancy,
-                                       seed_count,
-                                       seed_distance_factor,
-                                       seed_clearance,
-                                       test_distance,
-                                       minimum_length,
-                                       close_loops,
-                                       singularity_radius,
-                                       abrupt_turn_angle,
-                                       max_steps,
-                                       random_seed,
-                                       thread_count,
-                                       with_signals(progress)};
-        const py::gil_scoped_release release;
-        return place_streamlines(mesh, field, options);
-      },
-      py::arg("mesh"), py::arg("field"), py::kw_only(), py::arg("separation_distance") = defaults.separation_distance,
-      py::arg("separation_distances") = defaults.separation_distances, py::arg("method") = defaults.method,
-      py::arg("occupancy") = defaults.occupancy, py::arg("seed_count") = defaults.seed_count,
-      py::arg("seed_distance_factor") = defaults.seed_distance_factor,
-      py::arg("seed_clearance") = defaults.seed_clearance, py::arg("test_distance") = defaults.test_distance,
-      py::arg("minimum_length") = defaults.minimum_length, py::arg("close_loops") = defaults.close_loops,
-      py::arg("singularity_radius") = defaults.singularity_radius,
-      py::arg("abrupt_turn_angle") = defaults.abrupt_turn_angle, py::arg("max_steps") = defaults.max_steps,
-      py::arg("random_seed") = defaults.random_seed, py::arg("thread_count") = defaults.thread_count,
-      py::arg("progress") = py::none());
+  module.def("place_streamlines", place, py::arg("mesh"), py::arg("field"), py::kw_only(),
+             py::arg("separation_distance") = defaults.separation_distance,
+             py::arg("separation_distances") = defaults.separation_distances, py::arg("method") = defaults.method,
+             py::arg("occupancy") = defaults.occupancy, py::arg("seed_count") = defaults.seed_count,
+             py::arg("seed_distance_factor") = defaults.seed_distance_factor,
+             py::arg("seed_clearance") = defaults.seed_clearance, py::arg("test_distance") = defaults.test_distance,
+             py::arg("minimum_length") = defaults.minimum_length, py::arg("close_loops") = defaults.close_loops,
+             py::arg("singularity_radius") = defaults.singularity_radius,
+             py::arg("polishing_rounds") = defaults.polishing_rounds,
+             py::arg("polishing_time") = defaults.polishing_time,
+             py::arg("abrupt_turn_angle") = defaults.abrupt_turn_angle, py::arg("max_steps") = defaults.max_steps,
+             py::arg("random_seed") = defaults.random_seed, py::arg("thread_count") = defaults.thread_count,
+             py::arg("progress") = py::none());
 }
 
 }  // namespace pectinate::bindings

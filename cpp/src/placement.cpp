@@ -3,21 +3,19 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <optional>
-#include <string>
 
 #include "detail/chord_occupancy.hpp"
 #include "detail/edge_point.hpp"
 #include "detail/line_ends.hpp"
 #include "detail/longest_first.hpp"
-#include "detail/number_text.hpp"
+#include "detail/placement_options.hpp"
+#include "detail/polishing.hpp"
 #include "detail/random.hpp"
 #include "detail/seed_ring.hpp"
 #include "detail/sheet.hpp"
 #include "detail/thread_pool.hpp"
 #include "detail/vec.hpp"
-#include "pectinate/errors.hpp"
 #include "pectinate/field_topology.hpp"
 #include "pectinate/occupancy.hpp"
 
@@ -30,50 +28,8 @@ using WorkspacePointer = decltype(StreamlineTracer::make_workspace());
 constexpr auto progress_interval = std::chrono::milliseconds(50);
 /// A callback that takes long, on a large surface, is called more seldom: at most this share of the time is its.
 constexpr int slowest_share = 20;
-/// More would only take memory and keep the callback waiting.
-constexpr int most_seeds = 1'000'000;
 /// Candidates that a thread traces between two looks at the clock.
 constexpr std::int64_t candidates_per_look = 8;
-
-void check(const PlacementOptions& options) {
-  if (options.seed_count < 1 || options.seed_count > most_seeds) {
-    throw InvalidOption("seed_count is " + std::to_string(options.seed_count) + ", but must be in [1, 1000000]");
-  }
-  if (!(options.seed_distance_factor >= 1 && options.seed_distance_factor < 1e6)) {
-    throw InvalidOption("seed_distance_factor is " + detail::number_text(options.seed_distance_factor) +
-                        ", but must be at least 1 and finite: nearer than d_sep nothing is free");
-  }
-  if (options.method == PlacementMethod::longest && options.occupancy != OccupancyModel::exact) {
-    throw InvalidOption("method longest needs exact occupancy; choose another method for the edge mask");
-  }
-  if (!(options.seed_clearance >= 1 && options.seed_clearance <= 2)) {
-    throw InvalidOption("seed_clearance is " + detail::number_text(options.seed_clearance) + ", but must be in [1, 2]");
-  }
-  if (!(options.test_distance > 0 && options.test_distance <= 1)) {
-    throw InvalidOption("test_distance is " + detail::number_text(options.test_distance) + ", but must be in (0, 1]");
-  }
-  const bool strict = options.seed_clearance == 1 && options.test_distance == 1;
-  if (!strict && options.occupancy != OccupancyModel::exact) {
-    throw InvalidOption("seed_clearance and test_distance need exact occupancy; leave them at 1 for the edge mask");
-  }
-  if (!(options.minimum_length >= 0 && std::isfinite(options.minimum_length))) {
-    throw InvalidOption("minimum_length is " + detail::number_text(options.minimum_length) +
-                        ", but must be finite and not negative");
-  }
-  if (options.close_loops && options.method != PlacementMethod::longest) {
-    throw InvalidOption("close_loops needs method longest; choose that, or leave it off");
-  }
-  if (!(options.singularity_radius >= 0 && std::isfinite(options.singularity_radius))) {
-    throw InvalidOption("singularity_radius is " + detail::number_text(options.singularity_radius) +
-                        ", but must be finite and not negative; 0 turns it off");
-  }
-  if (options.singularity_radius > 0 && options.occupancy != OccupancyModel::exact) {
-    throw InvalidOption("singularity_radius needs exact occupancy; leave it at 0 for the edge mask");
-  }
-  if (options.thread_count < 1 || options.thread_count > 1024) {
-    throw InvalidOption("thread_count is " + std::to_string(options.thread_count) + ", but must be in [1, 1024]");
-  }
-}
 
 Clearance clearance_of(const PlacementOptions& options) {
   return {options.test_distance, options.seed_clearance};
@@ -117,6 +73,23 @@ class Progress {
   Clock::duration interval_ = progress_interval;
   std::int64_t question_count_ = 0;
   bool cancelled_ = false;
+};
+
+/// When polishing ends.
+class Limits {
+ public:
+  explicit Limits(const PlacementOptions& options)
+      : rounds_(options.polishing_rounds), seconds_(options.polishing_time) {}
+
+  bool are_reached(std::int64_t rounds) const {
+    if (rounds_ > 0 && rounds >= rounds_) return true;
+    return seconds_ > 0 && std::chrono::duration<double>(Clock::now() - start_).count() >= seconds_;
+  }
+
+ private:
+  std::int64_t rounds_;
+  double seconds_;
+  Clock::time_point start_ = Clock::now();
 };
 
 /// Draws the seed points of one step by the paper's three methods.
@@ -342,14 +315,29 @@ double place_by_contest(const Ground& ground, const PlacementOptions& options, P
 /// The longest first. Returns the coverage.
 double place_longest(const Ground& ground, const PlacementOptions& options, Progress& progress, Placement& placement) {
   detail::ChordOccupancy occupancy(ground.mesh, ground.tracer, clearance_of(options), ground.singular);
+  const detail::LineRules rules{options.minimum_length, options.close_loops};
   std::vector<detail::ChordsAhead> ahead;
-  const bool complete = detail::place_longest_first(
-      ground.mesh, ground.tracer, {options.minimum_length, options.close_loops}, occupancy,
-      [&](const auto& line) {
-        append(line, placement);
-        ahead.push_back(line.ahead);
-      },
-      [&] { return !progress.is_cancelled([&] { return occupancy.coverage(); }); });
+  const auto place = [&](const auto& line) {
+    append(line, placement);
+    ahead.push_back(line.ahead);
+  };
+  const auto go_on = [&] { return !progress.is_cancelled([&] { return occupancy.coverage(); }); };
+  bool complete = true;
+  if (detail::polishes(options)) {
+    detail::Polisher polisher(ground.mesh, ground.tracer, rules, occupancy, options.random_seed);
+    complete = polisher.fill(go_on);
+    if (complete) {
+      const Limits limits(options);
+      placement.statistics.polishing_rounds = polisher.polish([&](std::int64_t rounds) {
+        if (limits.are_reached(rounds)) return false;
+        complete = go_on();
+        return complete;
+      });
+    }
+    polisher.for_each(place);
+  } else {
+    complete = detail::LineFiller(ground.mesh, ground.tracer, rules, occupancy, place).fill(go_on);
+  }
   if (!complete) placement.end = PlacementEnd::cancelled;
   detail::extend_ends(ground.tracer, options.test_distance, ahead, placement);
   return occupancy.coverage();
@@ -358,7 +346,7 @@ double place_longest(const Ground& ground, const PlacementOptions& options, Prog
 }  // namespace
 
 Placement place_streamlines(const SurfaceMesh& mesh, const OrientationField& field, const PlacementOptions& options) {
-  check(options);
+  detail::check(options);
   const StreamlineTracer tracer(
       mesh, field,
       {options.separation_distance, options.separation_distances, options.abrupt_turn_angle, options.max_steps});
@@ -369,8 +357,10 @@ Placement place_streamlines(const SurfaceMesh& mesh, const OrientationField& fie
   const auto place = options.method == PlacementMethod::longest ? place_longest : place_by_contest;
   const double coverage =
       place({mesh, tracer, singular_region(mesh, field, options.singularity_radius)}, options, progress, placement);
+  const auto polishing_rounds = placement.statistics.polishing_rounds;
   placement.statistics = placement_statistics(placement.lengths, placement.stop_reasons, directed_area(mesh, field),
                                               mean_separation(tracer, placement), coverage);
+  placement.statistics.polishing_rounds = polishing_rounds;
   placement.options = options;
   placement.options.progress = nullptr;
   return placement;

@@ -215,6 +215,7 @@ class PlacementStatistics:
     short_fraction: float
     coverage: float
     stop_counts: list[int]
+    polishing_rounds: int
 
 class PlacementOptions:
     separation_distance: float
@@ -227,6 +228,8 @@ class PlacementOptions:
     minimum_length: float
     close_loops: bool
     singularity_radius: float
+    polishing_rounds: int
+    polishing_time: float
     abrupt_turn_angle: float
     max_steps: int
     random_seed: int
@@ -346,6 +349,8 @@ def place_streamlines(
     minimum_length: float = ...,
     close_loops: bool = ...,
     singularity_radius: float = ...,
+    polishing_rounds: int = ...,
+    polishing_time: float = ...,
     abrupt_turn_angle: float = ...,
     max_steps: int = ...,
     random_seed: int = ...,

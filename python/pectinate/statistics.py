@@ -39,6 +39,8 @@ class PlacementStatistics:
         Ends by reason: `boundary`, `near_other`, `near_itself`, `abrupt_turn`, `no_field`, `max_steps`, `closed` (the
         last point is the first), `singularity`; two a
         streamline.
+    polishing_rounds
+        Played after the placement.
     """
 
     streamline_count: int
@@ -51,6 +53,7 @@ class PlacementStatistics:
     short_fraction: float
     coverage: float
     stop_counts: dict[str, int]
+    polishing_rounds: int
 
     @classmethod
     def from_core(cls, core: _core.PlacementStatistics) -> PlacementStatistics:

@@ -254,34 +254,12 @@ TEST_CASE("exact placement: oblique parallel lines are d_sep apart and whole") {
   }
 }
 
-/// From an end of a streamline to the nearest of the others, and of its own parts more than 2 d_sep away along it.
-double distance_to_others(const std::vector<Piece>& segments, const Placement& placement, std::size_t line, int end) {
-  const auto p = end == 0 ? placement.offsets[line] : placement.offsets[line + 1] - 1;
-  const Vector point = detail::vector(placement.points[p]);
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto& segment : segments) {
-    const double between = end == 0 ? segment.arc : placement.lengths[line] - segment.arc_end;
-    if (segment.line == line && between <= 2 * segment.separation_distance) continue;
-    least = std::min(least, detail::distance_to_segment(point, segment.start, segment.end));
-  }
-  return least;
-}
-
 TEST_CASE("exact placement: a line ends at others where they are d_sep away, in the midst of triangles") {
   const auto mesh = jittered_grid(12, 9).mesh();
   for (const auto& hard : hard_fields) {
     CAPTURE(hard.name);
     for (const double separation : {0.4, 1.7}) {
-      const auto placement = checked(mesh, make_field(mesh, hard), with(separation));
-      const auto segments = segments_of(placement);
-      for (std::size_t i = 0; i < placement.lengths.size(); ++i) {
-        for (const int end : {0, 1}) {
-          if (placement.stop_reasons[i][end] != StopReason::near_other) continue;
-          const double distance = distance_to_others(segments, placement, i, end) / separation;
-          CHECK(distance >= 1);
-          CHECK(distance <= 1 + 2e-3);
-        }
-      }
+      check_ends_near_others(checked(mesh, make_field(mesh, hard), with(separation)));
     }
   }
 }

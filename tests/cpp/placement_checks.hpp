@@ -231,6 +231,33 @@ inline void check_self_separation(const Placement& placement, double separation)
   }
 }
 
+/// From an end of a streamline to the nearest of the others, over the distance that they shall keep; and of its own
+/// parts with more than 2 d_sep of it between, over d_sep.
+inline double room_at_end(const std::vector<Piece>& segments, const Placement& placement, std::size_t line, int end) {
+  const auto p = end == 0 ? placement.offsets[line] : placement.offsets[line + 1] - 1;
+  const detail::Vector point = detail::vector(placement.points[p]);
+  double least = std::numeric_limits<double>::infinity();
+  for (const auto& segment : segments) {
+    const double between = end == 0 ? segment.arc : placement.lengths[line] - segment.arc_end;
+    const bool is_own = segment.line == line;
+    if (is_own && between <= 2 * segment.separation_distance) continue;
+    const double kept = segment.separation_distance * (is_own ? 1 : placement.options.test_distance);
+    least = std::min(least, detail::distance_to_segment(point, segment.start, segment.end) / kept);
+  }
+  return least;
+}
+
+/// With method longest and one d_sep: streamlines that stop near others run on until these are as near as they may be.
+inline void check_ends_near_others(const Placement& placement) {
+  const auto segments = segments_of(placement);
+  for (std::size_t i = 0; i < placement.lengths.size(); ++i) {
+    for (const int end : {0, 1}) {
+      if (placement.stop_reasons[i][end] != StopReason::near_other) continue;
+      CHECK(room_at_end(segments, placement, i, end) <= 1 + 2e-3);
+    }
+  }
+}
+
 /// With exact occupancy: each streamline had, somewhere, room to start beside those placed before it; those of method
 /// longest that are long need none if all keep d_sep.
 inline void check_room_to_start(const Placement& final_placement) {

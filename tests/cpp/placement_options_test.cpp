@@ -35,7 +35,12 @@ TEST_CASE("placement: the result carries the options as used") {
   CHECK(used.singularity_radius == 0.01);
   options.method = PlacementMethod::longest;
   options.close_loops = true;
-  CHECK(checked(mesh, smooth_field(mesh), options).options.close_loops);
+  options.polishing_rounds = 3;
+  options.polishing_time = 100;
+  const auto polished = checked(mesh, smooth_field(mesh), options);
+  CHECK(polished.options.close_loops);
+  CHECK(polished.options.polishing_rounds == 3);
+  CHECK(polished.options.polishing_time == 100);
   CHECK(used.seed_count == 5);
   CHECK(used.random_seed == 99);
   CHECK(used.seed_distance_factor == 1.7);
@@ -56,6 +61,19 @@ TEST_CASE("placement: options out of range are refused") {
   };
   for (const double bad : {0.0, -1.0, nan, infinity, 1e-12}) {
     refused([=](auto& options) { options.separation_distance = bad; });
+  }
+  for (const double bad : {-1.0, -1e-300, nan, infinity}) {
+    refused([=](auto& options) { options.polishing_time = bad; });
+  }
+  refused([](auto& options) { options.polishing_rounds = -1; });
+  refused([](auto& options) { options.polishing_rounds = std::numeric_limits<std::int64_t>::min(); });
+  for (const auto method : {PlacementMethod::random, PlacementMethod::neighborhood, PlacementMethod::distance}) {
+    for (const auto occupancy : {OccupancyModel::exact, OccupancyModel::edge_mask}) {
+      refused(
+          [=](auto& options) { options.method = method, options.occupancy = occupancy, options.polishing_rounds = 1; });
+      refused(
+          [=](auto& options) { options.method = method, options.occupancy = occupancy, options.polishing_time = 1; });
+    }
   }
   for (const double bad : {0.999, -1.0, nan, infinity}) {
     refused([=](auto& options) { options.seed_distance_factor = bad; });

@@ -54,6 +54,8 @@ def test_place_leaves_the_defaults_to_the_library(square, tmp_path):
         ("--seeds", "3", "seed_count", 3),
         ("--seed-distance-factor", "1.5", "seed_distance_factor", 1.5),
         ("--singularity-radius", "0.5", "singularity_radius", 0.5),
+        ("--polishing-rounds", "2", "polishing_rounds", 2),
+        ("--polishing-time", "0.01", "polishing_time", 0.01),
         ("--max-steps", "7", "max_steps", 7),
         ("--random-seed", "12345", "random_seed", 12345),
         ("--threads", "2", "thread_count", 2),

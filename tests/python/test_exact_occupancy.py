@@ -96,6 +96,7 @@ def test_segments_keep_their_distance_and_no_chord_is_left(data: st.DataObject) 
     options["seed_clearance"] = data.draw(st.sampled_from([1.0, 1.11]))
     options["test_distance"] = data.draw(st.sampled_from([1.0, 0.8]))
     options["close_loops"] = method == "longest" and data.draw(st.booleans())
+    options["polishing_rounds"] = data.draw(st.sampled_from([0, 30])) if method == "longest" else 0
     placement = place_streamlines(
         load(mesh, field=vectors, field_location="triangle"), separation_distance=separation, **options
     )

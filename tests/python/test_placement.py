@@ -203,7 +203,7 @@ def test_defaults_are_the_engine_s_and_come_back_as_used() -> None:
     given: dict[str, Any] = {"method": "random", "occupancy": "edge_mask", "seed_count": 2, "random_seed": 2**64 - 1}
     assert place_streamlines(model, **given).options == DEFAULTS | given
     given = {"seed_clearance": 1.16, "test_distance": 0.9, "minimum_length": 0.25}
-    given |= {"close_loops": True, "singularity_radius": 0.1}
+    given |= {"close_loops": True, "singularity_radius": 0.1, "polishing_rounds": 3, "polishing_time": 7.5}
     assert place_streamlines(model, **given).options == DEFAULTS | given
 
 
@@ -307,6 +307,8 @@ BAD_OPTIONS = {
     "test_distance": [0, 1.01, -1, np.nan],
     "minimum_length": [-1, np.nan, np.inf],
     "singularity_radius": [-1, np.nan, np.inf],
+    "polishing_rounds": [-1, -(2**63)],
+    "polishing_time": [-1, np.nan, np.inf],
     "abrupt_turn_angle": [0, -1, 4, np.nan],
     "max_steps": [0, -7],
     "thread_count": [0, -1, 10**6],

@@ -57,6 +57,13 @@ struct PlacementOptions {
   /// them), unit of the mesh, >= 0; 0 lets them come as near as they do. What is that near counts as covered. Exact
   /// occupancy only.
   double singularity_radius = 0;
+  /// Rounds of polishing after the placement: each takes out a few streamlines that lie together and fills their place
+  /// with others, so that in the end the mean length is greater, total length and coverage no less, and all else as
+  /// promised. 0 is none, but if `polishing_time` is not 0, as many as there is time for. Method `longest` only.
+  std::int64_t polishing_rounds = 0;
+  /// Seconds of wall time after which polishing ends, >= 0; 0 is no limit. `PlacementStatistics` has the number of
+  /// rounds, and so many without a limit give the same bytes.
+  double polishing_time = 0;
   double abrupt_turn_angle = TracingOptions{}.abrupt_turn_angle;  ///< radians, in (0, pi]; pi disables criterion 4
   std::int64_t max_steps = TracingOptions{}.max_steps;            ///< triangles crossed each way, >= 1
   std::uint64_t random_seed = 20190101;                           ///< the same seed gives the same bytes
@@ -88,7 +95,8 @@ struct Placement {
 /// are more than 2 d_sep apart along it too (points only for the paper's methods; along a closed one, the shorter way
 /// round). Ends always.
 ///
-/// The same arguments give the same bytes, whatever `thread_count`. Throws InvalidOption, InvalidField.
+/// The same arguments give the same bytes, whatever `thread_count`, unless `polishing_time` limits the rounds. Throws
+/// InvalidOption, InvalidField.
 Placement place_streamlines(const SurfaceMesh& mesh, const OrientationField& field, const PlacementOptions& options);
 
 }  // namespace pectinate

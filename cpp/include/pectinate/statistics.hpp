@@ -22,6 +22,7 @@ struct PlacementStatistics {
   double short_fraction = 0;        ///< share of streamlines shorter than d_sep
   double coverage = 0;              ///< share of the edges' length that is within d_sep of a streamline
   std::array<std::int64_t, stop_reason_count> stop_counts{};  ///< ends by StopReason, two per streamline
+  std::int64_t polishing_rounds = 0;                          ///< played
 };
 
 /// Counts of lengths in equal bins from 0 to the longest; `edges` has one more element than `counts`.

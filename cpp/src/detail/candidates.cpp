@@ -66,6 +66,12 @@ bool Candidates::is_first(double length, std::int32_t trajectory) const {
   return length >= minimum_length_ && (heap_.empty() || key(length, trajectory) >= heap_.front().key);
 }
 
+void Candidates::clear() {
+  chords_.clear();
+  trajectories_.clear();
+  heap_.clear();
+}
+
 void Candidates::make_room() {
   std::size_t held = 0;
   for (const auto& piece : heap_) held += static_cast<std::size_t>(piece.length);

@@ -41,6 +41,9 @@ class Candidates {
   /// Would a stretch of this length come first?
   bool is_first(double length, std::int32_t trajectory) const;
 
+  /// Forgets all trajectories and pieces.
+  void clear();
+
   /// Where trajectories run on and on beside one another they might take any amount of memory.
   bool are_too_many() const { return chords_.size() > too_many_chords_; }
   /// Are there many more chords than were left last time?

@@ -50,12 +50,9 @@ ChordOccupancy::ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& 
       slack_(size_slack * static_cast<float>(mesh.bounding_box_diagonal())),
       tiles_(mesh.triangle_count()),
       stop_marks_(sheet_, CapsuleMarks::Kind::shadows,
-                  [this](std::int32_t triangle, const Interval& chords) {
-                    stopped_.add(triangle, chords);
-                    if (has_seed_sets_) unseeded_.add(triangle, chords);
-                  }),
+                  [this](auto triangle, const auto& chords) { take(triangle, chords); }),
       seed_marks_(sheet_, CapsuleMarks::Kind::cores,
-                  [this](std::int32_t triangle, const Interval& chords) { unseeded_.add(triangle, chords); }) {
+                  [this](auto triangle, const auto& chords) { take_seeds(triangle, chords); }) {
   make_tiles();
   // Where the surface was cut it goes on for distances.
   const bool is_cut = !mesh.repairs().non_manifold_edges.empty();
@@ -132,6 +129,14 @@ void ChordOccupancy::add(const Polyline& line) {
     stopped_.add(line.triangles[i], own);
     if (has_seed_sets_) unseeded_.add(line.triangles[i], own);
   }
+}
+
+void ChordOccupancy::reset(std::int32_t triangle) {
+  if (!sheet_.has_direction(triangle)) return;
+  stopped_.clear(triangle);
+  if (has_seed_sets_) unseeded_.clear(triangle);
+  if (!has_singular_) return;
+  for (const auto& chords : singular_.intervals(triangle)) take(triangle, chords);
 }
 
 void ChordOccupancy::retire_seed(std::int32_t triangle, const Interval& chords) {

@@ -41,6 +41,7 @@ class ChordOccupancy {
   const IntervalSets& stopped() const { return stopped_; }
   const IntervalSets& unseeded() const { return has_seed_sets_ ? unseeded_ : stopped_; }
   bool has_seed_sets() const { return has_seed_sets_; }
+  bool has_direction(std::int32_t triangle) const { return sheet_.has_direction(triangle); }
   const Clearance& clearance() const { return clearance_; }
   /// Why no streamline may take a chord.
   StopReason stop_reason(std::int32_t triangle, double chord) const {
@@ -48,6 +49,15 @@ class ChordOccupancy {
   }
 
   void add(const Polyline& line);
+
+  /// Takes back all marks in a triangle, those of useless seeds as well; what never was free stays taken.
+  void reset(std::int32_t triangle);
+  /// Marks chords of a triangle: no streamline may take them, or may start at them.
+  void take(std::int32_t triangle, const Interval& chords) {
+    stopped_.add(triangle, chords);
+    if (has_seed_sets_) unseeded_.add(triangle, chords);
+  }
+  void take_seeds(std::int32_t triangle, const Interval& chords) { unseeded_.add(triangle, chords); }
 
   /// Gives up a chord as a seed, when it proved useless.
   void retire_seed(std::int32_t triangle, const Interval& chords);
@@ -57,6 +67,8 @@ class ChordOccupancy {
 
   /// The share of the area of all chords in a triangle that is still free for seeds.
   double free_share(std::int32_t triangle) const { return free_share(triangle, unseeded()); }
+  /// The same for streamlines to take.
+  double uncovered_share(std::int32_t triangle) const { return free_share(triangle, stopped_); }
   /// The share of the surface, of its triangles with a direction, whose chords are taken.
   double coverage() const;
 

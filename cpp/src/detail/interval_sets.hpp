@@ -10,7 +10,7 @@
 
 namespace pectinate::detail {
 
-/// For each of many items, a subset of [0, 1]: a union of closed intervals that only grows. Most are empty, all of
+/// For each of many items, a subset of [0, 1]: a union of closed intervals. Most are empty, all of
 /// [0, 1], or one interval.
 ///
 /// Each item has a summary in sixteenths of [0, 1] that answers most questions.
@@ -40,6 +40,7 @@ class IntervalSets {
   void prefetch(std::int32_t item) const { __builtin_prefetch(items_.data() + item); }
 
   void fill(std::int32_t item);
+  void clear(std::int32_t item);
   /// Intervals that touch become one.
   void add(std::int32_t item, Interval interval);
 
@@ -65,6 +66,7 @@ class IntervalSets {
 
   std::int32_t make_node(const Node& node);
   void release(std::int32_t node);
+  void release_all(std::int32_t node);
 
   LargeArray<Item> items_;
   std::vector<Node> nodes_;
@@ -72,12 +74,13 @@ class IntervalSets {
 };
 
 inline void IntervalSets::fill(std::int32_t item) {
-  for (auto node = items_[item].first; node >= 0;) {
-    const auto next = nodes_[node].next;
-    release(node);
-    node = next;
-  }
+  release_all(items_[item].first);
   items_[item] = {full, 0xffff, 0xffff};
+}
+
+inline void IntervalSets::clear(std::int32_t item) {
+  release_all(items_[item].first);
+  items_[item] = {};
 }
 
 inline void IntervalSets::add(std::int32_t item, Interval interval) {
@@ -125,6 +128,15 @@ inline std::int32_t IntervalSets::make_node(const Node& node) {
 inline void IntervalSets::release(std::int32_t node) {
   nodes_[node].next = released_;
   released_ = node;
+}
+
+/// A node and those that follow it.
+inline void IntervalSets::release_all(std::int32_t node) {
+  while (node >= 0) {
+    const auto next = nodes_[node].next;
+    release(node);
+    node = next;
+  }
 }
 
 }  // namespace pectinate::detail

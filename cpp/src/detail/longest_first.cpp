@@ -40,10 +40,12 @@ constexpr double long_length = 9;
 /// Narrower gaps between occupied chords hold no streamline.
 constexpr double least_gap = 4 * least_position;
 
-class LongestFirst {
+}  // namespace
+
+class LineFiller::Implementation {
  public:
-  LongestFirst(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const LineRules& rules,
-               ChordOccupancy& occupancy, const std::function<void(const PlacedLine&)>& place)
+  Implementation(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const LineRules& rules,
+                 ChordOccupancy& occupancy, Place place)
       : mesh_(mesh),
         tracer_(tracer),
         sheet_(tracer.sheet()),
@@ -51,19 +53,35 @@ class LongestFirst {
         separation_(tracer.options().separation_distances.empty() ? tracer.options().separation_distance : 0),
         close_loops_(rules.close_loops),
         occupancy_(occupancy),
-        place_(place),
+        place_(std::move(place)),
+        mark_([this](const Polyline& line) -> const std::vector<std::int32_t>& {
+          occupancy_.add(line);
+          return occupancy_.changed();
+        }),
         candidates_(crossings_.size(), rules.minimum_length,
                     {closed_bonus, occupancy.has_seed_sets() ? hugging_bonus_with_room : hugging_bonus}),
         hugged_(crossings_.size(), 0) {}
 
-  bool run(const std::function<bool()>& go_on) {
+  bool fill(const std::function<bool()>& go_on) {
     if (!fill_pool(go_on) || !empty_heap(go_on)) return false;
-    // Where all gaps together gave no streamline, they never will.
-    for (std::int64_t before = -1; before != placed_count_;) {
-      before = placed_count_;
-      if (!fill_gaps(go_on)) return false;
+    return fill_all_gaps([&] { return triangles_with_gaps(); }, go_on);
+  }
+
+  void mark_with(Mark mark) { mark_ = std::move(mark); }
+
+  void refill(const FreedRegion& freed) {
+    const auto always = [] { return true; };
+    forget_candidates();
+    for (const auto& start : freed.first) place_through(start);
+    ++round_;
+    for (const auto t : freed.triangles) {
+      if (hugged_[t] == round_ || occupancy_.unseeded().is_full(t)) continue;
+      for (const auto& gap : occupancy_.unseeded().gaps(t)) {
+        if (gap.high - gap.low >= least_gap) add_if_free({t, freed.start_in(gap)});
+      }
     }
-    return true;
+    empty_heap(always);
+    fill_all_gaps([&]() -> const auto& { return freed.triangles; }, always);
   }
 
  private:
@@ -212,9 +230,9 @@ class LongestFirst {
   }
 
   /// Candidates that lie just outside the band of the streamline placed last.
-  void push_hugging() {
+  void push_hugging(const std::vector<std::int32_t>& changed) {
     ++round_;
-    for (const auto t : occupancy_.changed()) {
+    for (const auto t : changed) {
       if (hugged_[t] == round_ || occupancy_.unseeded().is_full(t)) continue;
       make_room();  // what goes for want of it comes back when gaps are filled
       hugged_[t] = round_;
@@ -231,20 +249,49 @@ class LongestFirst {
     }
   }
 
-  /// Of the mesh, in its order.
+  /// A candidate from there, if that is free.
+  void add_if_free(const ChordPlace& start) {
+    if (occupancy_.stopped().contains(start.triangle, start.coordinate)) return;
+    const auto stretch = add_trajectory(start.triangle, start.coordinate, true, false).stretch();
+    for (auto i = stretch.first; i < stretch.last; ++i) hugged_[chords_[i].triangle()] = round_;
+  }
+
+  /// Places the longest line through there, or of what is left of it, that may be placed; no other candidates stay.
+  void place_through(const ChordPlace& start) {
+    add_if_free(start);
+    const auto before = placed_count_;
+    while (placed_count_ == before && candidates_.piece_count() > 0) place_next();
+    forget_candidates();
+  }
+
+  void forget_candidates() {
+    candidates_.clear();
+    self_free_parts_.forget();
+  }
+
+  /// Until no gap gives a streamline: where all together gave none, they never will. False if it was stopped.
+  template <class Triangles>
+  bool fill_all_gaps(const Triangles& triangles, const std::function<bool()>& go_on) {
+    for (std::int64_t before = -1; before != placed_count_;) {
+      before = placed_count_;
+      if (!fill_gaps(triangles(), go_on)) return false;
+    }
+    return true;
+  }
+
+  /// In the mesh's order.
   std::vector<std::int32_t> triangles_with_gaps() const {
     std::vector<std::int32_t> triangles;
     for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
-      if (!occupancy_.unseeded().is_full(t)) triangles.push_back(sheet_.mesh_triangles[t]);
+      if (!occupancy_.unseeded().is_full(t)) triangles.push_back(t);
     }
-    std::sort(triangles.begin(), triangles.end());
+    std::ranges::sort(triangles, {}, [&](std::int32_t t) { return sheet_.mesh_triangles[t]; });
     return triangles;
   }
 
   /// Candidates through all gaps that are left, and what of them fits; false if it was stopped.
-  bool fill_gaps(const std::function<bool()>& go_on) {
-    for (const auto mesh_triangle : triangles_with_gaps()) {
-      const auto t = sheet_.ranks[mesh_triangle];
+  bool fill_gaps(const std::vector<std::int32_t>& triangles, const std::function<bool()>& go_on) {
+    for (const auto t : triangles) {
       if (occupancy_.unseeded().is_full(t)) continue;
       for (const auto& gap : occupancy_.unseeded().gaps(t)) {
         if (gap.high - gap.low < least_gap) continue;
@@ -269,19 +316,24 @@ class LongestFirst {
   bool empty_heap(const std::function<bool()>& go_on) {
     while (candidates_.piece_count() > 0) {
       if (!go_on()) return false;
-      const auto piece = candidates_.pop();
-      if (close_loops_ && candidates_.trajectory(piece.trajectory()).is_closed()) {
-        place_closed(piece);
-      } else if (const auto best = longest_free(piece)) {
-        const auto& [stretch, length] = *best;
-        if (candidates_.is_first(length, piece.trajectory())) {
-          place_best(stretch, piece);
-        } else {
-          candidates_.push(stretch, length, piece.trajectory(), piece.is_self_free());
-        }
-      }
+      place_next();
     }
     return true;
+  }
+
+  /// Places the piece on top, if it still holds; or what is left of it goes back.
+  void place_next() {
+    const auto piece = candidates_.pop();
+    if (close_loops_ && candidates_.trajectory(piece.trajectory()).is_closed()) {
+      place_closed(piece);
+    } else if (const auto best = longest_free(piece)) {
+      const auto& [stretch, length] = *best;
+      if (candidates_.is_first(length, piece.trajectory())) {
+        place_best(stretch, piece);
+      } else {
+        candidates_.push(stretch, length, piece.trajectory(), piece.is_self_free());
+      }
+    }
   }
 
   /// Cuts off from all pieces what is not free any more.
@@ -376,10 +428,10 @@ class LongestFirst {
   void place_polyline(const Stretch& stretch, std::int32_t trajectory) {
     if (candidates_.trajectory(trajectory).is_closed()) polyline_.points.back() = polyline_.points.front();
     const auto line = make_line(stretch, trajectory);  // while what stops it is not yet in its own neighbourhood
-    occupancy_.add(polyline_);
+    const auto& changed = mark_(polyline_);
     place_(line);
     ++placed_count_;
-    push_hugging();
+    push_hugging(changed);
   }
 
   void make_polyline(const Stretch& stretch) {
@@ -399,6 +451,7 @@ class LongestFirst {
   PlacedLine make_line(const Stretch& stretch, std::int32_t trajectory) const {
     PlacedLine line;
     line.points = polyline_.points;
+    line.chords = candidates_.chords_of(stretch);
     for (auto i = stretch.first; i < stretch.last; ++i) {
       line.triangles.push_back(sheet_.mesh_triangles[chords_[i].triangle()]);
     }
@@ -429,7 +482,8 @@ class LongestFirst {
   double separation_;  // 0 where it varies
   bool close_loops_;
   ChordOccupancy& occupancy_;
-  const std::function<void(const PlacedLine&)>& place_;
+  Place place_;
+  Mark mark_;
 
   Candidates candidates_;
   Chords& chords_ = candidates_.chords();
@@ -444,12 +498,22 @@ class LongestFirst {
   std::uint32_t round_ = 0;
 };
 
-}  // namespace
+LineFiller::LineFiller(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const LineRules& rules,
+                       ChordOccupancy& occupancy, Place place)
+    : implementation_(std::make_unique<Implementation>(mesh, tracer, rules, occupancy, std::move(place))) {}
 
-bool place_longest_first(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const LineRules& rules,
-                         ChordOccupancy& occupancy, const std::function<void(const PlacedLine&)>& place,
-                         const std::function<bool()>& go_on) {
-  return LongestFirst(mesh, tracer, rules, occupancy, place).run(go_on);
+LineFiller::~LineFiller() = default;
+
+bool LineFiller::fill(const std::function<bool()>& go_on) {
+  return implementation_->fill(go_on);
+}
+
+void LineFiller::mark_with(Mark mark) {
+  implementation_->mark_with(std::move(mark));
+}
+
+void LineFiller::refill(const FreedRegion& freed) {
+  implementation_->refill(freed);
 }
 
 }  // namespace pectinate::detail

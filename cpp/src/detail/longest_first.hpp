@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "detail/chord_occupancy.hpp"
@@ -22,6 +24,7 @@ struct PlacedLine {
   double length = 0;
   std::array<StopReason, 2> stop_reasons{};
   ChordsAhead ahead;
+  std::span<const Chord> chords{};  ///< of the sheet, while it is being placed
 };
 
 /// Which lines there may be.
@@ -30,13 +33,38 @@ struct LineRules {
   bool close_loops;  ///< closed curves of the field become closed lines
 };
 
+/// What lines left free when they were taken out of a full surface, and how it is filled again.
+struct FreedRegion {
+  std::vector<std::int32_t> triangles;              ///< where candidates start, in this order
+  std::vector<ChordPlace> first;                    ///< through these lines are placed before all others
+  std::function<double(const Interval&)> start_in;  ///< where in a gap a candidate starts
+};
+
 /// Places the longest streamline that still fits, again and again, until none does.
 ///
-/// Calls `place` for each, and stops early when `go_on` says no; returns whether it
-/// came to the end. Deterministic without random numbers. Ends always: every placed streamline takes chords of positive
-/// measure, every seed that gives none is retired.
-bool place_longest_first(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const LineRules& rules,
-                         ChordOccupancy& occupancy, const std::function<void(const PlacedLine&)>& place,
-                         const std::function<bool()>& go_on);
+/// Calls `place` for each. Deterministic without random numbers. Ends always: every placed streamline takes chords of
+/// positive measure, every seed that gives none is retired.
+class LineFiller {
+ public:
+  using Place = std::function<void(const PlacedLine&)>;
+  /// Marks what a line takes; returns the triangles in which that may have changed the occupancy.
+  using Mark = std::function<const std::vector<std::int32_t>&(const Polyline&)>;
+
+  LineFiller(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const LineRules& rules, ChordOccupancy& occupancy,
+             Place place);
+  ~LineFiller();
+
+  /// Stops early when `go_on` says no; returns whether it came to the end.
+  bool fill(const std::function<bool()>& go_on);
+
+  /// Instead of `ChordOccupancy::add`.
+  void mark_with(Mark mark);
+  /// Fills what was freed.
+  void refill(const FreedRegion& freed);
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
 
 }  // namespace pectinate::detail

@@ -20,6 +20,12 @@ struct Chord {
   bool leaves_through_low_high() const { return code & 1; }
 };
 
+/// Where a chord lies.
+struct ChordPlace {
+  std::int32_t triangle;
+  double coordinate;
+};
+
 using Chords = LargeArray<Chord>;
 
 /// At the first and the last point of a line, the chord that it does not take because another is near; it runs away

@@ -135,6 +135,8 @@ def _add_placement(parser: argparse.ArgumentParser) -> None:
     add("--test-distance", "test_distance", float, "FACTOR", "run on until this many separations from others")
     add("--minimum-length", "minimum_length", float, "MM", "shorter streamlines are not placed")
     add("--singularity-radius", "singularity_radius", float, "MM", "stop this near to singularities of the field")
+    add("--polishing-rounds", "polishing_rounds", whole, "N", "so often replace some streamlines by longer ones")
+    add("--polishing-time", "polishing_time", float, "SECONDS", "end that after so long; 0: no limit")
     add("--max-steps", "max_steps", whole, "N", "triangles that a streamline crosses each way at most")
     add("--random-seed", "random_seed", seed, "N", "the same number gives the same result")
     add("--threads", "thread_count", whole, "N", "the result does not depend on it")

@@ -50,6 +50,7 @@ def topology_rows(summary: dict[str, Any]) -> list[Row]:
 
 def statistics_rows(statistics: dict[str, Any]) -> list[Row]:
     """Rows for the figures of a placement."""
+    rounds = statistics["polishing_rounds"]
     ends = {reason: count for reason, count in statistics["stop_counts"].items() if count}
     return [
         ("streamlines", f"{statistics['streamline_count']:,}, total length {statistics['total_length']:,.1f} mm"),
@@ -61,6 +62,7 @@ def statistics_rows(statistics: dict[str, Any]) -> list[Row]:
         ("shorter than spacing", f"{statistics['short_fraction']:.1%} of the streamlines"),
         ("coverage", f"{statistics['coverage']:.2%}"),
         ("ends", ", ".join(f"{count:,} {reason}" for reason, count in ends.items())),
+        *([("polishing", f"{rounds:,} rounds")] if rounds else []),
     ]
 
 

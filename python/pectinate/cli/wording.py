@@ -37,6 +37,8 @@ _SAME_NAMES = (
     "occupancy",
     "outlier_angle",
     "per_vertex",
+    "polishing_rounds",
+    "polishing_time",
     "random_seed",
     "second",
     "seed_clearance",
