@@ -10,13 +10,13 @@
 
 #include "detail/candidates.hpp"
 #include "detail/chord_sides.hpp"
+#include "detail/chord_tracer.hpp"
 #include "detail/closed_orbit.hpp"
 #include "detail/line_ends.hpp"
 #include "detail/self_free_parts.hpp"
 #include "detail/sheet.hpp"
 #include "detail/trajectories.hpp"
 #include "detail/triangle_rings.hpp"
-#include "detail/visited_chords.hpp"
 
 namespace pectinate::detail {
 namespace {
@@ -47,10 +47,9 @@ class LineFiller::Implementation {
   Implementation(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const LineRules& rules,
                  ChordOccupancy& occupancy, Place place)
       : mesh_(mesh),
-        tracer_(tracer),
         sheet_(tracer.sheet()),
         crossings_(sheet_.crossings),
-        separation_(tracer.options().separation_distances.empty() ? tracer.options().separation_distance : 0),
+        chord_tracer_(tracer, occupancy),
         close_loops_(rules.close_loops),
         occupancy_(occupancy),
         place_(std::move(place)),
@@ -85,70 +84,14 @@ class LineFiller::Implementation {
   }
 
  private:
-  double separation(std::int32_t triangle) const {
-    return separation_ > 0 ? separation_ : tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
-  }
+  double separation(std::int32_t triangle) const { return chord_tracer_.separation(triangle); }
 
-  // Tracing ---------------------------------------------------------------------------------------------------------
+  // Trajectories ----------------------------------------------------------------------------------------------------
 
-  /// Appends the chords that follow on one, leaving through a side; stops at occupied ones if asked.
-  StopReason walk(const Chord& start, Role exit, bool mind_others, Chords& chords) {
-    auto triangle = start.triangle();
-    double coordinate = start.coordinate;
-    const auto max_steps = tracer_.options().max_steps;
-    for (std::int64_t step = 0; step < max_steps; ++step) {
-      const auto way_out = crossings_[triangle].exit(exit);
-      if (way_out.triangle < 0) return way_out.stop_reason;
-      const double position = edge_position(crossings_[triangle], exit, coordinate);
-      triangle = way_out.triangle;
-      const auto& crossings = crossings_[triangle];
-      // It goes on into one of two triangles; by the time it is known which, both will be at hand.
-      if (way_out.role == low_high) {
-        prefetch(crossings.neighbours[low_middle], mind_others);
-        prefetch(crossings.neighbours[middle_high], mind_others);
-      } else {
-        prefetch(crossings.neighbours[low_high], mind_others);
-      }
-      coordinate = chord_coordinate(crossings, way_out.role, position);
-      if (mind_others && occupancy_.stopped().contains(triangle, coordinate)) {
-        return occupancy_.stop_reason(triangle, coordinate);
-      }
-      if (visited_.revisit(triangle, coordinate, crossings.width, separation(triangle))) {
-        return StopReason::near_itself;
-      }
-      exit = exit_role(crossings, way_out.role, coordinate);
-      chords.push_back(make_chord(triangle, coordinate, exit == low_high));
-    }
-    return StopReason::max_steps;
-  }
-
-  void prefetch(std::int32_t t, bool mind_others) const {
-    __builtin_prefetch(crossings_.data() + t);
-    visited_.prefetch(t);
-    if (mind_others) occupancy_.stopped().prefetch(t);
-  }
-
-  Chord make_chord(std::int32_t triangle, double coordinate, bool leaves_through_low_high) const {
-    const auto length = static_cast<float>(chord_length(crossings_[triangle], coordinate));
-    return {coordinate, length, 2 * triangle + leaves_through_low_high};
-  }
-
-  /// Traces both ways from a chord and stores the trajectory as a candidate.
+  /// Stores the trajectory through a chord as a candidate.
   Trajectory add_trajectory(std::int32_t triangle, double coordinate, bool mind_others, bool hugs) {
-    const auto& crossings = crossings_[triangle];
-    const Chord start = make_chord(triangle, coordinate, true);
-    visited_.start(crossings_.size());
-    visited_.revisit(triangle, coordinate, crossings.width, 0);
-    scratch_.clear();
     const auto first = std::ssize(chords_);
-    std::array<StopReason, 2> ends;
-    ends[0] = walk(start, exit_role(crossings, low_high, coordinate), mind_others, scratch_);
-    // Traced away from the start: turned round, each chord leaves through the side that it was entered through.
-    for (auto chord = scratch_.rbegin(); chord != scratch_.rend(); ++chord) {
-      chords_.push_back({chord->coordinate, chord->length, chord->code ^ 1});
-    }
-    chords_.push_back(start);
-    ends[1] = walk(start, low_high, mind_others, chords_);
+    const auto ends = chord_tracer_.trace({triangle, coordinate}, mind_others, chords_);
     const Trajectory trajectory({first, std::ssize(chords_)}, ends, hugs);
     candidates_.add(trajectory);
     if (close_loops_) add_closed(trajectory);
@@ -405,7 +348,7 @@ class LineFiller::Implementation {
       candidates_.push(behind, candidates_.length(behind), piece.trajectory());
       const double part_length = candidates_.length(part);
       if (!candidates_.is_first(part_length, piece.trajectory())) {
-        const bool stays_so = separation_ > 0;
+        const bool stays_so = chord_tracer_.separation() > 0;
         candidates_.push(part, part_length, piece.trajectory(), stays_so);
         return;
       }
@@ -476,10 +419,9 @@ class LineFiller::Implementation {
   }
 
   const SurfaceMesh& mesh_;
-  const StreamlineTracer& tracer_;
   const Sheet& sheet_;
   const LargeArray<TriangleCrossings>& crossings_;
-  double separation_;  // 0 where it varies
+  ChordTracer chord_tracer_;
   bool close_loops_;
   ChordOccupancy& occupancy_;
   Place place_;
@@ -490,8 +432,6 @@ class LineFiller::Implementation {
   std::int64_t placed_count_ = 0;
 
   SelfFreeParts self_free_parts_;
-  VisitedChords visited_;
-  Chords scratch_;
   Polyline polyline_;                  // of the stretch at hand
   std::vector<Interval> intervals_;    // of the triangle at hand
   std::vector<std::uint32_t> hugged_;  // per triangle: the last streamline beside which a candidate crosses it

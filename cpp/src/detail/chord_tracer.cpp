@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: MIT
+#include "detail/chord_tracer.hpp"
+
+namespace pectinate::detail {
+
+ChordTracer::ChordTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy)
+    : tracer_(tracer),
+      occupancy_(occupancy),
+      sheet_(tracer.sheet()),
+      crossings_(sheet_.crossings),
+      separation_(tracer.options().separation_distances.empty() ? tracer.options().separation_distance : 0) {}
+
+std::array<StopReason, 2> ChordTracer::trace(const ChordPlace& start, bool mind_others, Chords& chords) {
+  const auto& crossings = crossings_[start.triangle];
+  const Chord first = make_chord(start, true);
+  visited_.start(crossings_.size());
+  visited_.revisit(start.triangle, start.coordinate, crossings.width, 0);
+  backwards_.clear();
+  std::array<StopReason, 2> ends;
+  ends[0] = walk(first, exit_role(crossings, low_high, start.coordinate), mind_others, backwards_);
+  // Traced away from the start: turned round, each chord leaves through the side that it was entered through.
+  for (auto chord = backwards_.rbegin(); chord != backwards_.rend(); ++chord) {
+    chords.push_back({chord->coordinate, chord->length, chord->code ^ 1});
+  }
+  chords.push_back(first);
+  ends[1] = walk(first, low_high, mind_others, chords);
+  return ends;
+}
+
+/// Appends the chords that follow on one, leaving through a side.
+StopReason ChordTracer::walk(const Chord& start, Role exit, bool mind_others, Chords& chords) {
+  const auto* const all = crossings_.data();
+  const auto max_steps = tracer_.options().max_steps;
+  const auto* crossings = &all[start.triangle()];
+  double coordinate = start.coordinate;
+  for (std::int64_t step = 0; step < max_steps; ++step) {
+    const auto way_out = crossings->exit(exit);
+    const auto triangle = way_out.triangle;
+    if (triangle < 0) return way_out.stop_reason;
+    const double position = edge_position(*crossings, exit, coordinate);
+    crossings = &all[triangle];
+    // It goes on into one of two triangles; by the time it is known which, both will be at hand.
+    if (way_out.role == low_high) {
+      prefetch(crossings->neighbours[low_middle], mind_others);
+      prefetch(crossings->neighbours[middle_high], mind_others);
+    } else {
+      prefetch(crossings->neighbours[low_high], mind_others);
+    }
+    coordinate = chord_coordinate(*crossings, way_out.role, position);
+    if (mind_others && occupancy_.stopped().contains(triangle, coordinate)) {
+      return occupancy_.stop_reason(triangle, coordinate);
+    }
+    if (visited_.revisit(triangle, coordinate, crossings->width, separation(triangle))) {
+      return StopReason::near_itself;
+    }
+    exit = exit_role(*crossings, way_out.role, coordinate);
+    chords.push_back(make_chord({triangle, coordinate}, exit == low_high));
+  }
+  return StopReason::max_steps;
+}
+
+}  // namespace pectinate::detail

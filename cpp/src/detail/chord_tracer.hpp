@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+
+#include "detail/chord_occupancy.hpp"
+#include "detail/sheet.hpp"
+#include "detail/trajectories.hpp"
+#include "detail/visited_chords.hpp"
+#include "pectinate/tracing.hpp"
+
+namespace pectinate::detail {
+
+/// Traces trajectories from chord to chord.
+class ChordTracer {
+ public:
+  ChordTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy);
+
+  /// d_sep in a triangle of the sheet.
+  double separation(std::int32_t triangle) const {
+    return separation_ > 0 ? separation_ : tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
+  }
+  /// 0 where it varies.
+  double separation() const { return separation_; }
+
+  /// Appends the chords of the trajectory through one of them, from end to end, and tells why it stops there; at
+  /// occupied ones if asked.
+  std::array<StopReason, 2> trace(const ChordPlace& start, bool mind_others, Chords& chords);
+
+ private:
+  StopReason walk(const Chord& start, Role exit, bool mind_others, Chords& chords);
+  void prefetch(std::int32_t triangle, bool mind_others) const {
+    __builtin_prefetch(crossings_.data() + triangle);
+    visited_.prefetch(triangle);
+    if (mind_others) occupancy_.stopped().prefetch(triangle);
+  }
+  Chord make_chord(const ChordPlace& place, bool leaves_through_low_high) const {
+    const auto length = static_cast<float>(chord_length(crossings_[place.triangle], place.coordinate));
+    return {place.coordinate, length, 2 * place.triangle + leaves_through_low_high};
+  }
+
+  const StreamlineTracer& tracer_;
+  const ChordOccupancy& occupancy_;
+  const Sheet& sheet_;
+  const LargeArray<TriangleCrossings>& crossings_;
+  double separation_;  // 0 where it varies
+  VisitedChords visited_;
+  Chords backwards_;
+};
+
+}  // namespace pectinate::detail
