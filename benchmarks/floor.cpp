@@ -69,6 +69,11 @@ double best_seconds(int repeats, const Work& work) {
   return best;
 }
 
+/// Ends where another streamline is near lie in the midst of triangles: up to there it is not traced.
+bool lies_on_side(const Placement& placement, std::int64_t point) {
+  return *std::ranges::min_element(placement.barycentric[point]) == 0;
+}
+
 /// Where a kept streamline begins, and how far it goes.
 struct Start {
   std::int32_t triangle;
@@ -80,7 +85,8 @@ struct Start {
 std::vector<Start> starts_of(const SurfaceMesh& mesh, const Sheet& sheet, const Placement& placement) {
   std::vector<Start> starts;
   for (std::size_t i = 0; i + 1 < placement.offsets.size(); ++i) {
-    const auto point = placement.offsets[i];
+    const auto point = placement.offsets[i] + !lies_on_side(placement, placement.offsets[i]);
+    const auto last = placement.offsets[i + 1] - 1 - !lies_on_side(placement, placement.offsets[i + 1] - 1);
     const auto mesh_triangle = placement.segment_triangles[point - static_cast<std::int64_t>(i)];
     const auto& weights = placement.barycentric[point];
     const auto triangle = sheet.ranks[mesh_triangle];
@@ -89,8 +95,7 @@ std::vector<Start> starts_of(const SurfaceMesh& mesh, const Sheet& sheet, const 
     const int side = (across + 1) % 3;
     const double along = weights[mesh.runs_along(mesh_triangle, side) ? (side + 1) % 3 : side];
     const Role entry = pectinate::detail::role_of(side, crossings.middle);
-    starts.push_back({triangle, entry, chord_coordinate(crossings, entry, along),
-                      placement.offsets[i + 1] - placement.offsets[i] - 1});
+    starts.push_back({triangle, entry, chord_coordinate(crossings, entry, along), last - point});
   }
   return starts;
 }
@@ -115,13 +120,15 @@ void trace(const Sheet& sheet, const std::vector<Start>& starts, std::vector<Vec
 }
 
 double greatest_difference(const Placement& placement, const std::vector<Vector>& points) {
-  if (points.size() != placement.points.size()) return std::numeric_limits<double>::infinity();
   double greatest = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
+  auto traced = points.begin();
+  for (std::int64_t i = 0; i < std::ssize(placement.points); ++i) {
+    if (!lies_on_side(placement, i)) continue;
+    if (traced == points.end()) return std::numeric_limits<double>::infinity();
     const Vector kept(placement.points[i][0], placement.points[i][1], placement.points[i][2]);
-    greatest = std::max(greatest, (points[i] - kept).norm());
+    greatest = std::max(greatest, (*traced++ - kept).norm());
   }
-  return greatest;
+  return traced == points.end() ? greatest : std::numeric_limits<double>::infinity();
 }
 
 void measure(const std::string& path, double separation, int repeats) {
@@ -145,7 +152,7 @@ void measure(const std::string& path, double separation, int repeats) {
   std::printf(
       "{\"placing\": %.9g, \"preparing\": %.9g, \"tracing\": %.9g, \"segments\": %zu, \"streamlines\": %zu, "
       "\"greatest_difference\": %.3g}\n",
-      placing, preparing, tracing_once, placement.segment_triangles.size(), starts.size(),
+      placing, preparing, tracing_once, points.size() - starts.size(), starts.size(),
       greatest_difference(placement, points));
 }
 
