@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <numeric>
 
 #include "detail/capsule.hpp"
 #include "detail/chord_sides.hpp"
@@ -30,7 +31,7 @@ struct Extension {
 class EndExtender {
  public:
   EndExtender(const StreamlineTracer& tracer, double clearance, Placement& placement)
-      : tracer_(tracer), sheet_(tracer.sheet()), clearance_(clearance), placement_(placement), grid_(reach()) {}
+      : tracer_(tracer), sheet_(tracer.sheet()), clearance_(clearance), placement_(placement) {}
 
   void run(const std::vector<ChordsAhead>& ahead) {
     for (std::size_t line = 0; line < ahead.size(); ++line) {
@@ -41,8 +42,8 @@ class EndExtender {
         }
       }
     }
-    fill_grid();
-    for (std::size_t i = 0; i < extensions_.size(); ++i) extensions_[i].share = free_share(i);
+    const auto grid = make_grid();
+    for (std::size_t i = 0; i < extensions_.size(); ++i) extensions_[i].share = free_share(i, grid);
     std::erase_if(extensions_, [](const auto& extension) { return extension.share == 0; });
     store();
   }
@@ -63,46 +64,49 @@ class EndExtender {
     return sheet_.mesh_triangles[extension.chord.triangle()];
   }
 
-  void fill_grid() {
-    for (std::size_t line = 0; line + 1 < placement_.offsets.size(); ++line) {
-      for (auto i = first_point(line); i < last_point(line); ++i) {
-        grid_.add(i, point(i), point(i + 1));
-        longest_ = std::max(longest_, (point(i + 1) - point(i)).norm());
+  SegmentGrid make_grid() const {
+    double total = std::accumulate(placement_.lengths.begin(), placement_.lengths.end(), 0.0);
+    for (const auto& extension : extensions_) total += (extension.far - extension.start).norm();
+    const auto visit_all = [&](const auto& visit) {
+      for (std::size_t line = 0; line + 1 < placement_.offsets.size(); ++line) {
+        for (auto i = first_point(line); i < last_point(line); ++i) {
+          visit(static_cast<std::uint32_t>(i), point(i), point(i + 1));
+        }
       }
-    }
-    for (std::int64_t i = 0; i < std::ssize(extensions_); ++i) {
-      grid_.add(point_count() + i, extensions_[i].start, extensions_[i].far);
-    }
-    grid_.finish();
+      for (std::size_t i = 0; i < extensions_.size(); ++i) {
+        visit(static_cast<std::uint32_t>(placement_.points.size() + i), extensions_[i].start, extensions_[i].far);
+      }
+    };
+    return {reach(), placement_.points.size() + extensions_.size(), total, visit_all};
   }
 
   /// How much of its chord an extension may take.
-  double free_share(std::size_t index) {
+  double free_share(std::size_t index, const SegmentGrid& grid) const {
     const auto& extension = extensions_[index];
     const Vector along = extension.far - extension.start;
-    const double length = along.norm(), far = length + longest_ + reach();
+    const double length = along.norm();
     const double least = least_extension * tracer_.separation_distance(mesh_triangle(extension)) / length;
     double share = 1;
     bool is_cut = false;
     const auto keep_from = [&](const Vector& start, const Vector& end, double distance) {
+      const double far = distance + ((end - start).norm() + share * length) / 2;
+      if (((start + end - share * along) / 2 - extension.start).squaredNorm() > far * far) return;
       const auto inside = intersect({start, end, distance}, extension.start, along);
       if (!inside) return;
       share = std::min(share, inside->low);
       is_cut = true;
     };
-    grid_.visit_near(extension.start, extension.far, [&](std::int64_t segment) {
-      if (share < least) return;
+    const auto is_wanted = [&](double along) { return along < share && share >= least; };
+    grid.visit_near(extension.start, extension.far, is_wanted, [&](std::int64_t segment) {
       if (segment >= point_count()) {
         const auto& other = extensions_[segment - point_count()];
         if (other.share == 0 || other.line == extension.line) return;
         const auto& placed_first = other.line < extension.line ? other : extension;
         keep_from(other.start, other.point(), stop_distance(mesh_triangle(placed_first)));
       } else if (segment < first_point(extension.line) || segment > last_point(extension.line)) {
-        const Vector start = point(segment);
-        if ((start - extension.start).squaredNorm() > far * far) return;
         const bool was_first = segment < first_point(extension.line);
         const auto triangle = was_first ? placement_.point_triangles[segment] : mesh_triangle(extension);
-        keep_from(start, point(segment + 1), stop_distance(triangle));
+        keep_from(point(segment), point(segment + 1), stop_distance(triangle));
       }
     });
     if (!is_cut) return 0;  // whatever it was that stopped it, it still does
@@ -191,8 +195,6 @@ class EndExtender {
   const Sheet& sheet_;
   double clearance_;
   Placement& placement_;
-  SegmentGrid grid_;
-  double longest_ = 0;  // of all segments
   std::vector<Extension> extensions_;
 };
 
