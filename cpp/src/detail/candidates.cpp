@@ -75,14 +75,14 @@ void Candidates::clear() {
 void Candidates::make_room() {
   std::size_t held = 0;
   for (const auto& piece : heap_) held += static_cast<std::size_t>(piece.length);
-  if (held > too_many_chords_ / 4 * 3) drop_shortest();
+  if (held > too_many_chords_ / 8 * 7) drop_shortest();
   drop_dead_chords();
 }
 
-/// Keeps the longest pieces, half as many chords as would be too many.
+/// Keeps the longest pieces, three quarters as many chords as would be too many.
 void Candidates::drop_shortest() {
   std::sort(heap_.begin(), heap_.end(), [](const Piece& a, const Piece& b) { return b < a; });
-  auto room = static_cast<std::int64_t>(too_many_chords_ / 2);
+  auto room = static_cast<std::int64_t>(too_many_chords_ / 4 * 3);
   std::size_t kept = 0;
   for (; kept < heap_.size() && room > 0; ++kept) room -= heap_[kept].length;
   heap_.erase(heap_.begin() + static_cast<std::ptrdiff_t>(kept), heap_.end());
