@@ -16,6 +16,9 @@ namespace {
 constexpr double guard = 2e-6;
 /// Shorter pieces are not worth a point; in separation distances.
 constexpr double least_extension = 1e-3;
+/// Chords longer than so many separation distances are left alone: so many others lie beside them that to look at all
+/// would take longer than the placement.
+constexpr double longest_chord_ahead = 64;
 
 /// What a streamline takes of the chord ahead.
 struct Extension {
@@ -36,12 +39,14 @@ class EndExtender {
   void run(const std::vector<ChordsAhead>& ahead) {
     for (std::size_t line = 0; line < ahead.size(); ++line) {
       for (const int end : {0, 1}) {
-        if (const auto& chord = ahead[line][end]) {
+        const auto& chord = ahead[line][end];
+        if (chord && chord->length <= longest_chord_ahead * separation(chord->triangle())) {
           extensions_.push_back({line, end, *chord, point_on(sheet_, *chord, entry_side(sheet_, *chord)),
                                  point_on(sheet_, *chord, exit_side(sheet_, *chord))});
         }
       }
     }
+    if (extensions_.empty()) return;
     const auto grid = make_grid();
     for (std::size_t i = 0; i < extensions_.size(); ++i) extensions_[i].share = free_share(i, grid);
     std::erase_if(extensions_, [](const auto& extension) { return extension.share == 0; });
@@ -60,6 +65,9 @@ class EndExtender {
   Vector point(std::int64_t index) const { return vector(placement_.points[index]); }
   std::int64_t first_point(std::size_t line) const { return placement_.offsets[line]; }
   std::int64_t last_point(std::size_t line) const { return placement_.offsets[line + 1] - 1; }
+  double separation(std::int32_t triangle) const {
+    return tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
+  }
   std::int32_t mesh_triangle(const Extension& extension) const {
     return sheet_.mesh_triangles[extension.chord.triangle()];
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -16,12 +17,12 @@ namespace pectinate::detail {
 class SegmentGrid {
  public:
   /// For what is at most `reach` apart. `visit_all(add)` calls add(segment, start, end) for all, twice the same;
-  /// `total_length` is theirs. There may be no more than 2^32 pieces of a reach.
+  /// `total_length` is theirs.
   template <class VisitAll>
   SegmentGrid(double reach, std::size_t count, double total_length, const VisitAll& visit_all) {
     // Short segments are soon found in small cells, of long ones there would be too many pieces.
-    const bool are_short = total_length < static_cast<double>(count) * reach / 2;
-    const double piece = are_short ? reach / 2 : reach;
+    const double mean = total_length / static_cast<double>(count);
+    const double piece = mean < reach / 2 ? reach / 2 : std::max(reach, mean / most_pieces);
     pieces_per_length_ = 1 / piece;
     cells_per_length_ = 1 / (reach + piece);
     const auto about = count + static_cast<std::size_t>(total_length * pieces_per_length_);
@@ -59,6 +60,7 @@ class SegmentGrid {
 
  private:
   using Cell = std::array<std::int64_t, 3>;
+  static constexpr double most_pieces = 8;  // of a segment, on average
 
   /// Pieces so short that two that are near have their middles at most a cell's side apart.
   std::int64_t piece_count(const Vector& start, const Vector& end) const {
