@@ -9,6 +9,9 @@
 
 namespace pectinate::detail {
 
+/// Keeps rounding on the safe side of distances that are kept; in these distances.
+inline constexpr double guard = 2e-6;
+
 /// A closed interval of a line's parameter.
 struct Interval {
   double low, high;

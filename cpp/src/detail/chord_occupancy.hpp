@@ -73,9 +73,6 @@ class ChordOccupancy {
   double coverage() const;
 
  private:
-  /// Keeps rounding on the safe side; in separation distances.
-  static constexpr double guard = 2e-6;
-
   /// What is known of a triangle at a glance, in single precision, relative to `origin_`; a cache line holds two.
   struct alignas(32) Tile {
     float x, y, z;

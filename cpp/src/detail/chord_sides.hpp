@@ -9,6 +9,11 @@
 
 namespace pectinate::detail {
 
+inline Chord make_chord(const Sheet& sheet, const ChordPlace& place, bool leaves_through_low_high) {
+  const auto length = static_cast<float>(chord_length(sheet.crossings[place.triangle], place.coordinate));
+  return {place.coordinate, length, 2 * place.triangle + leaves_through_low_high};
+}
+
 /// The side other than low-high that a chord crosses.
 inline Role short_side(const Sheet& sheet, const Chord& chord) {
   return exit_role(sheet.crossings[chord.triangle()], low_high, chord.coordinate);

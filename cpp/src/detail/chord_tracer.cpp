@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "detail/chord_tracer.hpp"
 
+#include "detail/chord_sides.hpp"
+
 namespace pectinate::detail {
 
 ChordTracer::ChordTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy)
@@ -12,7 +14,7 @@ ChordTracer::ChordTracer(const StreamlineTracer& tracer, const ChordOccupancy& o
 
 std::array<StopReason, 2> ChordTracer::trace(const ChordPlace& start, bool mind_others, Chords& chords) {
   const auto& crossings = crossings_[start.triangle];
-  const Chord first = make_chord(start, true);
+  const Chord first = make_chord(sheet_, start, true);
   visited_.start(crossings_.size());
   visited_.revisit(start.triangle, start.coordinate, crossings.width, 0);
   backwards_.clear();
@@ -54,7 +56,7 @@ StopReason ChordTracer::walk(const Chord& start, Role exit, bool mind_others, Ch
       return StopReason::near_itself;
     }
     exit = exit_role(*crossings, way_out.role, coordinate);
-    chords.push_back(make_chord({triangle, coordinate}, exit == low_high));
+    chords.push_back(make_chord(sheet_, {triangle, coordinate}, exit == low_high));
   }
   return StopReason::max_steps;
 }

@@ -34,10 +34,6 @@ class ChordTracer {
     visited_.prefetch(triangle);
     if (mind_others) occupancy_.stopped().prefetch(triangle);
   }
-  Chord make_chord(const ChordPlace& place, bool leaves_through_low_high) const {
-    const auto length = static_cast<float>(chord_length(crossings_[place.triangle], place.coordinate));
-    return {place.coordinate, length, 2 * place.triangle + leaves_through_low_high};
-  }
 
   const StreamlineTracer& tracer_;
   const ChordOccupancy& occupancy_;

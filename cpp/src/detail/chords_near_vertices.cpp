@@ -10,9 +10,6 @@
 namespace pectinate::detail {
 namespace {
 
-/// Keeps rounding on the safe side; in radii.
-constexpr double guard = 2e-6;
-
 /// Searches the triangles around one vertex after the other.
 class VertexSearch {
  public:

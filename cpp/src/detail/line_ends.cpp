@@ -12,8 +12,6 @@
 namespace pectinate::detail {
 namespace {
 
-/// Keeps rounding on the safe side; in separation distances.
-constexpr double guard = 2e-6;
 /// Shorter pieces are not worth a point; in separation distances.
 constexpr double least_extension = 1e-3;
 /// Chords longer than so many separation distances are left alone: so many others lie beside them that to look at all
@@ -93,7 +91,7 @@ class EndExtender {
     const auto& extension = extensions_[index];
     const Vector along = extension.far - extension.start;
     const double length = along.norm();
-    const double least = least_extension * tracer_.separation_distance(mesh_triangle(extension)) / length;
+    const double least = least_extension * separation(extension.chord.triangle()) / length;
     double share = 1;
     bool is_cut = false;
     const auto keep_from = [&](const Vector& start, const Vector& end, double distance) {
@@ -215,9 +213,7 @@ std::optional<Chord> chord_ahead(const Sheet& sheet, const Chord& chord) {
   const auto& crossings = sheet.crossings[way_out.triangle];
   const double position = edge_position(sheet.crossings[chord.triangle()], exit, chord.coordinate);
   const double coordinate = chord_coordinate(crossings, way_out.role, position);
-  const bool leaves_through_low_high = exit_role(crossings, way_out.role, coordinate) == low_high;
-  return Chord{coordinate, static_cast<float>(chord_length(crossings, coordinate)),
-               2 * way_out.triangle + leaves_through_low_high};
+  return make_chord(sheet, {way_out.triangle, coordinate}, exit_role(crossings, way_out.role, coordinate) == low_high);
 }
 
 void extend_ends(const StreamlineTracer& tracer, double clearance, const std::vector<ChordsAhead>& ahead,

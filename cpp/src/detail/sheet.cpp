@@ -112,9 +112,6 @@ class SheetMaker {
   void fill(std::int32_t t, const ChordMeasures& measures, std::int32_t lane) {
     const bool has_direction = field_.has_direction(t);
     const int m = has_direction ? static_cast<int>(measures.middle[lane]) : 0;
-    // Corners low, middle, high, and the sides that begin there: low-high, low-middle, middle-high.
-    static constexpr std::int32_t orders[3][3] = {{1, 0, 2}, {2, 1, 0}, {0, 2, 1}};
-    const auto& order = orders[m];
     static constexpr double signs[2] = {-1, 1};
     const auto& corners = mesh_.triangles()[t];
     const unsigned sides_running_along = mesh_.sides_running_along(t);
@@ -125,7 +122,7 @@ class SheetMaker {
     std::array<std::uint8_t, 3> codes;
     SideCosines cosines;
     for (const auto role : {low_high, low_middle, middle_high}) {
-      const int k = order[role];
+      const int k = side_of(role, m);  // begins at the corner low, middle or high, by Role
       const auto across = mesh_.neighbour(t, k);
       const unsigned runs_along = sides_running_along >> k & 1;
       vertices[role] = vertex_ranks[corners[k]];

@@ -9,7 +9,7 @@
 namespace pectinate::detail {
 
 /// Below this share of the input nothing meaningful is left in the plane.
-constexpr double least_share = 1e-9;
+inline constexpr double least_share = 1e-9;
 
 /// A line, or none, in every triangle of a mesh.
 struct PlanarDirections {
