@@ -54,6 +54,11 @@ void check_segment_distance(const Vector& p, const Vector& p_end, const Vector& 
 
 // Self-approach ------------------------------------------------------------------------------------------------------
 
+SegmentRun longest_run(const std::vector<Vector>& points, std::span<const std::int32_t> starts,
+                       std::int32_t before = 0) {
+  return longest_self_free_run(starts, before, [&](std::size_t i) { return (points[i + 1] - points[i]).norm(); });
+}
+
 /// The length of the longest run by comparing all pairs; checks that a run found otherwise has it and is free.
 void check_longest_run(const std::vector<Vector>& points, double distance, double arc_gap) {
   const auto count = points.size() - 1;
@@ -74,7 +79,7 @@ void check_longest_run(const std::vector<Vector>& points, double distance, doubl
     longest = std::max(longest, arc[reached[first]] - arc[first]);
   }
   const auto starts = self_free_starts(points, distance, arc_gap);
-  const auto run = longest_self_free_run(points, starts);
+  const auto run = longest_run(points, starts);
   REQUIRE(run.first < run.last);
   REQUIRE(run.last <= count);
   CHECK(run.last <= reached[run.first]);
@@ -82,8 +87,8 @@ void check_longest_run(const std::vector<Vector>& points, double distance, doubl
   // Of a part it is found from what is known of the whole.
   const auto before = static_cast<std::int32_t>(count / 4);
   const std::vector<Vector> part(points.begin() + before, points.end() - before / 2);
-  const auto known = longest_self_free_run(part, std::span(starts).subspan(before), before);
-  const auto alone = longest_self_free_run(part, self_free_starts(part, distance, arc_gap));
+  const auto known = longest_run(part, std::span(starts).subspan(before, part.size() - 1), before);
+  const auto alone = longest_run(part, self_free_starts(part, distance, arc_gap));
   CHECK(arc[known.last + before] - arc[known.first + before] ==
         doctest::Approx(arc[alone.last + before] - arc[alone.first + before]).epsilon(1e-12));
 }
@@ -222,7 +227,7 @@ TEST_CASE("self-free run: of spirals, circles, figures of eight and straight lin
       check_longest_run(points, distance, 2 * distance);
     }
     const auto line = curve(50, straight);
-    const auto run = longest_self_free_run(line, self_free_starts(line, distance, 2 * distance));
+    const auto run = longest_run(line, self_free_starts(line, distance, 2 * distance));
     CHECK((run.first == 0 && run.last == 49));
   }
 }

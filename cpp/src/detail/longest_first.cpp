@@ -2,6 +2,7 @@
 #include "detail/longest_first.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -27,6 +28,11 @@ constexpr double hugging_bonus = 1.05, hugging_bonus_with_room = 1.03;
 /// Closed lines come before all open ones: one that winds onto a closed curve would take its place, whatever its
 /// length.
 constexpr double closed_bonus = 1e6;
+/// Beside streamlines this long, in chords, a candidate that hugs them makes others needless that would start in the
+/// next ring of triangles; beside those twice as long, in the next two. They are the first ones of smooth
+/// fields: hundreds of candidates beside each, nearly as long and hardly apart, would take most of the time.
+constexpr std::size_t long_to_hug = 1024;
+constexpr int most_hugging_rings = 2;
 /// Seeds of hugging lines lie this far outside the band that they hug, in separation distances.
 constexpr double hugging_gap = 1e-6;
 /// Rings of triangles beside a trajectory of the pool that need no other. The fewer lines there will be, the more it
@@ -175,10 +181,11 @@ class LineFiller::Implementation {
   /// Candidates that lie just outside the band of the streamline placed last.
   void push_hugging(const std::vector<std::int32_t>& changed) {
     ++round_;
+    const int rings =
+        std::min(static_cast<int>(std::bit_width(polyline_.triangles.size() / long_to_hug)), most_hugging_rings);
     for (const auto t : changed) {
-      if (hugged_[t] == round_ || occupancy_.unseeded().is_full(t)) continue;
+      if (occupancy_.unseeded().is_full(t) || is_hugged_near(t, rings)) continue;
       make_room();  // what goes for want of it comes back when gaps are filled
-      hugged_[t] = round_;
       const double gap = hugging_gap * separation(t) / crossings_[t].width;
       occupancy_.unseeded().get_intervals(t, intervals_);
       for (const auto& [low, high] : intervals_) {
@@ -190,6 +197,14 @@ class LineFiller::Implementation {
         }
       }
     }
+  }
+
+  /// Does a candidate cross the triangle that hugs the streamline placed last, or another so many rings around it?
+  bool is_hugged_near(std::int32_t triangle, int rings) const {
+    if (hugged_[triangle] == round_) return true;
+    return rings > 0 && std::ranges::any_of(crossings_[triangle].neighbours, [&](std::int32_t beside) {
+             return beside >= 0 && is_hugged_near(beside, rings - 1);
+           });
   }
 
   /// A candidate from there, if that is free.
@@ -336,25 +351,40 @@ class LineFiller::Implementation {
 
   /// Places a stretch of a piece, or, where it comes back to itself, the longest part of it that does not.
   void place_best(const Stretch& stretch, const Piece& piece) {
-    make_polyline(stretch);
-    auto part = stretch;
-    if (!piece.is_self_free()) {  // where the distance varies, it is that at the beginning
-      const double distance = separation(chords_[stretch.first].triangle());
-      part = self_free_parts_.longest(stretch, piece.trajectory(), polyline_.points, distance);
-    }
-    if (part.last - part.first < stretch.last - stretch.first) {
-      const Stretch before{stretch.first, part.first}, behind{part.last, stretch.last};
-      candidates_.push(before, candidates_.length(before), piece.trajectory());
-      candidates_.push(behind, candidates_.length(behind), piece.trajectory());
-      const double part_length = candidates_.length(part);
-      if (!candidates_.is_first(part_length, piece.trajectory())) {
-        const bool stays_so = chord_tracer_.separation() > 0;
-        candidates_.push(part, part_length, piece.trajectory(), stays_so);
+    const auto trajectory = piece.trajectory();
+    polyline_.points.clear();
+    const auto part = piece.is_self_free() ? stretch : self_free_part(stretch, trajectory);
+    if (part != stretch) {
+      push_rest({stretch.first, part.first}, trajectory);
+      push_rest({part.last, stretch.last}, trajectory);
+      const double length = candidates_.length(part);
+      if (!candidates_.is_first(length, trajectory)) {
+        candidates_.push(part, length, trajectory, keeps_self_free());
         return;
       }
-      make_polyline(part);
     }
-    place_polyline(part, piece.trajectory());
+    if (part != stretch || polyline_.points.empty()) make_polyline(part);
+    place_polyline(part, trajectory);
+  }
+
+  /// The longest part of a stretch that does not come back to itself. Where d_sep varies, it is that at the beginning.
+  Stretch self_free_part(const Stretch& stretch, std::int32_t trajectory) {
+    const double distance = separation(chords_[stretch.first].triangle());
+    return self_free_parts_.longest(stretch, trajectory, distance, chords_, [&]() -> const auto& {
+      make_polyline(stretch);
+      return polyline_.points;
+    });
+  }
+
+  /// Does what does not come back to itself never do so, wherever it begins?
+  bool keeps_self_free() const { return chord_tracer_.separation() > 0; }
+
+  /// Puts back what the longest such part leaves, where possible under the length of its own such part: else what winds
+  /// and winds would be looked at again and again.
+  void push_rest(const Stretch& rest, std::int32_t trajectory) {
+    if (rest.first >= rest.last) return;
+    const auto part = keeps_self_free() ? self_free_part(rest, trajectory) : rest;
+    candidates_.push(rest, candidates_.length(part), trajectory, keeps_self_free() && part == rest);
   }
 
   /// Places a closed line if all of it is still free.

@@ -140,17 +140,6 @@ std::vector<std::int32_t> self_free_starts(const std::vector<Vector>& points, do
   return starts;
 }
 
-SegmentRun longest_self_free_run(const std::vector<Vector>& points, std::span<const std::int32_t> starts,
-                                 std::int32_t before) {
-  const auto arc = arc_lengths(points);
-  SegmentRun best{0, 0};
-  for (std::size_t last = 0; last + 1 < points.size(); ++last) {
-    const auto first = static_cast<std::size_t>(std::max(starts[last] - before, 0));
-    if (arc[last + 1] - arc[first] > arc[best.last] - arc[best.first]) best = {first, last + 1};
-  }
-  return best;
-}
-
 bool is_self_free_loop(const std::vector<Vector>& points, double distance, double arc_gap) {
   const auto count = points.size() - 1;
   const auto arc = arc_lengths(points);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -19,10 +20,22 @@ struct SegmentRun {
 /// criterion 5, exact over whole segments).
 std::vector<std::int32_t> self_free_starts(const std::vector<Vector>& points, double distance, double arc_gap);
 
-/// The longest run of a polyline, or of a part of one: `starts` are those of the part's segments, `before` is how many
-/// segments the whole has before it.
-SegmentRun longest_self_free_run(const std::vector<Vector>& points, std::span<const std::int32_t> starts,
-                                 std::int32_t before = 0);
+/// The longest run of a polyline, or of a part of one: `starts` are those of the part's segments, length(i) is how long
+/// they are, `before` is how many segments the whole has before it. Never empty.
+template <class Length>
+SegmentRun longest_self_free_run(std::span<const std::int32_t> starts, std::int32_t before, const Length& length) {
+  SegmentRun run{0, 0}, longest = run;
+  double run_length = 0, greatest = -1;
+  for (; run.last < starts.size(); ++run.last) {
+    run_length += length(run.last);
+    const auto start = static_cast<std::size_t>(std::max(starts[run.last] - before, 0));
+    for (; run.first < start; ++run.first) run_length -= length(run.first);
+    if (run_length <= greatest) continue;  // what overflows is no number, and taken
+    longest = {run.first, run.last + 1};
+    greatest = run_length;
+  }
+  return longest;
+}
 
 /// Is a closed polyline, whose last point is its first, free of such pairs, the line between them taken the shorter way
 /// round?

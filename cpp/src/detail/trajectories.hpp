@@ -35,6 +35,8 @@ using ChordsAhead = std::array<std::optional<Chord>, 2>;
 /// A stretch [first, last) of the stored chords.
 struct Stretch {
   std::int64_t first, last;
+
+  bool operator==(const Stretch&) const = default;
 };
 
 /// A curve of the field, from stop to stop. There may be more than triangles: it is small.
