@@ -4,6 +4,7 @@
 #include <array>
 
 #include "detail/chord_occupancy.hpp"
+#include "detail/self_approach.hpp"
 #include "detail/sheet.hpp"
 #include "detail/trajectories.hpp"
 #include "detail/visited_chords.hpp"
@@ -11,7 +12,9 @@
 
 namespace pectinate::detail {
 
-/// Traces trajectories from chord to chord.
+/// Traces trajectories from chord to chord. What has come far without an end, as they do on smooth fields, is looked at
+/// now and then: where it has come back to itself (criterion 5) it ends. So it needs not wind through all the surface
+/// until by chance it comes to a triangle for the second time.
 class ChordTracer {
  public:
   ChordTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy);
@@ -29,6 +32,7 @@ class ChordTracer {
 
  private:
   StopReason walk(const Chord& start, Role exit, bool mind_others, Chords& chords);
+  bool comes_back(const Chord& chord, double arc);
   void prefetch(std::int32_t triangle, bool mind_others) const {
     __builtin_prefetch(crossings_.data() + triangle);
     visited_.prefetch(triangle);
@@ -41,6 +45,8 @@ class ChordTracer {
   const LargeArray<TriangleCrossings>& crossings_;
   double separation_;  // 0 where it varies
   VisitedChords visited_;
+  SelfApproach passed_;  // points of the trajectory at hand
+  int passed_count_ = 0;
   Chords backwards_;
 };
 
