@@ -9,9 +9,9 @@ namespace pectinate::detail {
 namespace {
 
 /// From so far on points are kept of a trajectory, and so far from one another; in separation distances.
-constexpr double kept_from = 64, kept_every = 1;
+constexpr double kept_from = 64, kept_every = 4;
 /// Of so many points one is compared with those before it.
-constexpr int compared_every = 8;
+constexpr int compared_every = 2;
 
 }  // namespace
 
