@@ -9,6 +9,7 @@
 #include "detail/edge_point.hpp"
 #include "detail/line_ends.hpp"
 #include "detail/longest_first.hpp"
+#include "detail/placed_lines.hpp"
 #include "detail/placement_options.hpp"
 #include "detail/polishing.hpp"
 #include "detail/random.hpp"
@@ -225,34 +226,22 @@ void append(const SurfaceMesh& mesh, const Streamline& line, Placement& placemen
   placement.seed_points.push_back(first + line.seed_index);
 }
 
-void append(const detail::PlacedLine& line, Placement& placement) {
-  const auto first = static_cast<std::int64_t>(placement.points.size());
-  for (const auto& point : line.points) placement.points.push_back(detail::vec3(point));
-  for (auto* triangles : {&placement.point_triangles, &placement.segment_triangles}) {
-    triangles->insert(triangles->end(), line.triangles.begin(), line.triangles.end());
-  }
-  placement.point_triangles.push_back(line.triangles.back());
-  placement.barycentric.insert(placement.barycentric.end(), line.barycentric.begin(), line.barycentric.end());
-  placement.offsets.push_back(static_cast<std::int64_t>(placement.points.size()));
-  placement.lengths.push_back(line.length);
-  placement.stop_reasons.push_back(line.stop_reasons);
-  placement.seed_points.push_back(first + std::ssize(line.points) / 2);
-}
-
-/// Makes room for as many points as there can be: streamlines d_sep apart cross a triangle so wide across the field
-/// width / d_sep times. Memory that is not written to costs nothing; to move what is full to twice as much costs three
-/// times the result.
-void reserve_points(const StreamlineTracer& tracer, Placement& placement) {
+/// As many points as there can be: streamlines d_sep apart cross a triangle so wide across the field width / d_sep
+/// times. To move what is full to twice as much memory costs three times the result, room not written to nothing.
+std::size_t most_points(const StreamlineTracer& tracer) {
   const auto& options = tracer.options();
   const auto& varying = options.separation_distances;
   const double least = varying.empty() ? options.separation_distance : *std::ranges::min_element(varying);
   double width = 0;
   for (const auto& crossings : tracer.sheet().crossings) width += crossings.width;
-  const auto most = static_cast<std::size_t>(std::min(width / least, most_reserved * tracer.sheet().triangle_count()));
-  placement.points.reserve(most);
-  placement.barycentric.reserve(most);
-  placement.point_triangles.reserve(most);
-  placement.segment_triangles.reserve(most);
+  return static_cast<std::size_t>(std::min(width / least, most_reserved * tracer.sheet().triangle_count()));
+}
+
+void reserve(std::size_t point_count, Placement& placement) {
+  placement.points.reserve(point_count);
+  placement.barycentric.reserve(point_count);
+  placement.point_triangles.reserve(point_count);
+  placement.segment_triangles.reserve(point_count);
 }
 
 double directed_area(const SurfaceMesh& mesh, const OrientationField& field) {
@@ -292,6 +281,7 @@ double place_by_contest(const Ground& ground, const PlacementOptions& options, P
   const auto occupancy = options.occupancy == OccupancyModel::exact
                              ? make_exact_occupancy(mesh, tracer, clearance_of(options), singular)
                              : make_edge_mask(mesh, tracer);
+  reserve(most_points(tracer), placement);
   SeedSource source(mesh, tracer, options);
   Contest contest(tracer, options.minimum_length, options.thread_count);
   while (true) {
@@ -312,15 +302,12 @@ double place_by_contest(const Ground& ground, const PlacementOptions& options, P
   return occupancy->coverage();
 }
 
-/// The longest first. Returns the coverage.
-double place_longest(const Ground& ground, const PlacementOptions& options, Progress& progress, Placement& placement) {
+/// Finds streamlines, the longest first, and polishes them. Returns the coverage.
+double find_longest(const Ground& ground, const PlacementOptions& options, Progress& progress,
+                    detail::PlacedLines& lines, Placement& placement) {
   detail::ChordOccupancy occupancy(ground.mesh, ground.tracer, clearance_of(options), ground.singular);
   const detail::LineRules rules{options.minimum_length, options.close_loops};
-  std::vector<detail::ChordsAhead> ahead;
-  const auto place = [&](const auto& line) {
-    append(line, placement);
-    ahead.push_back(line.ahead);
-  };
+  const auto place = [&](const auto& line) { lines.add(line); };
   const auto go_on = [&] { return !progress.is_cancelled([&] { return occupancy.coverage(); }); };
   bool complete = true;
   if (detail::polishes(options)) {
@@ -339,8 +326,23 @@ double place_longest(const Ground& ground, const PlacementOptions& options, Prog
     complete = detail::LineFiller(ground.mesh, ground.tracer, rules, occupancy, place).fill(go_on);
   }
   if (!complete) placement.end = PlacementEnd::cancelled;
-  detail::extend_ends(ground.tracer, options.test_distance, ahead, placement);
   return occupancy.coverage();
+}
+
+/// The longest first. Returns the coverage. One after the other, what takes memory: occupancy, chords, and what is
+/// needed to let ends run on.
+double place_longest(const Ground& ground, const PlacementOptions& options, Progress& progress, Placement& placement) {
+  const auto& sheet = ground.tracer.sheet();
+  std::vector<detail::ChordsAhead> ahead;
+  double coverage = 0;
+  {
+    detail::PlacedLines lines(most_points(ground.tracer));
+    coverage = find_longest(ground, options, progress, lines, placement);
+    lines.write(sheet, placement);
+    for (std::size_t i = 0; i < lines.count(); ++i) ahead.push_back(chords_ahead(sheet, lines[i]));
+  }
+  detail::extend_ends(ground.tracer, options.test_distance, ahead, placement);
+  return coverage;
 }
 
 }  // namespace
@@ -353,7 +355,6 @@ Placement place_streamlines(const SurfaceMesh& mesh, const OrientationField& fie
   Progress progress(options.progress);
   Placement placement;
   placement.offsets.push_back(0);
-  reserve_points(tracer, placement);
   const auto place = options.method == PlacementMethod::longest ? place_longest : place_by_contest;
   const double coverage =
       place({mesh, tracer, singular_region(mesh, field, options.singularity_radius)}, options, progress, placement);

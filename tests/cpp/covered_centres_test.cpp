@@ -21,12 +21,7 @@ std::vector<Polyline> placed_lines(const SurfaceMesh& mesh, const StreamlineTrac
   std::vector<Polyline> lines;
   detail::ChordOccupancy occupancy(mesh, tracer, {});
   const auto keep = [&](const detail::PlacedLine& placed) {
-    Polyline line{placed.points, {}, {}};
-    for (const auto& chord : placed.chords) {
-      line.triangles.push_back(chord.triangle());
-      line.chords.push_back(chord.coordinate);
-    }
-    lines.push_back(line);
+    lines.emplace_back().follow(tracer.sheet(), placed.chords, placed.is_closed);
   };
   detail::LineFiller(mesh, tracer, {0, false}, occupancy, keep).fill([] { return true; });
   return lines;

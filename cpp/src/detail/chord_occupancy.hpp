@@ -13,6 +13,7 @@
 #include "detail/large_array.hpp"
 #include "detail/segments.hpp"
 #include "detail/sheet.hpp"
+#include "detail/trajectories.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/occupancy.hpp"
 #include "pectinate/surface_mesh.hpp"
@@ -24,6 +25,9 @@ struct Polyline {
   std::vector<Vector> points;
   std::vector<std::int32_t> triangles;
   std::vector<double> chords;
+
+  /// Becomes that along these chords.
+  void follow(const Sheet& sheet, std::span<const Chord> along, bool is_closed);
 };
 
 /// For every triangle, which of its chords come within the separation distance of a streamline: exact for whole

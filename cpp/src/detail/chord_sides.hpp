@@ -52,14 +52,23 @@ inline Vec3 weights_at_joint(const Sheet& sheet, const Chord& first, const Chord
   return weights_on_side(crossings, side, crossings.is_reversed(side) ? 1 - position : position);
 }
 
-/// The same at all points of a line, in the triangle of the chord after it, or of the last one.
-inline std::vector<Vec3> weights_along(const Sheet& sheet, std::span<const Chord> chords, bool is_closed) {
-  std::vector<Vec3> weights;
-  for (const auto& chord : chords) weights.push_back(weights_on_side(sheet, chord, entry_side(sheet, chord)));
+/// Calls visit(weights) for all points of a line, in the triangle of the chord after it, or of the last one.
+template <class Visit>
+void visit_weights(const Sheet& sheet, std::span<const Chord> chords, bool is_closed, const Visit& visit) {
+  for (const auto& chord : chords) visit(weights_on_side(sheet, chord, entry_side(sheet, chord)));
   const auto& last = chords.back();
-  weights.push_back(is_closed ? weights_at_joint(sheet, chords.front(), last)
-                              : weights_on_side(sheet, last, exit_side(sheet, last)));
-  return weights;
+  visit(is_closed ? weights_at_joint(sheet, chords.front(), last)
+                  : weights_on_side(sheet, last, exit_side(sheet, last)));
+}
+
+/// Calls visit(point) for all points of a line; a closed one ends where it begins.
+template <class Visit>
+void visit_points(const Sheet& sheet, std::span<const Chord> chords, bool is_closed, const Visit& visit) {
+  const Vector first = point_on(sheet, chords.front(), entry_side(sheet, chords.front()));
+  visit(first);
+  const auto open_count = chords.size() - is_closed;
+  for (const auto& chord : chords.first(open_count)) visit(point_on(sheet, chord, exit_side(sheet, chord)));
+  if (is_closed) visit(first);
 }
 
 }  // namespace pectinate::detail

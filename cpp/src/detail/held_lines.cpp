@@ -16,13 +16,16 @@ std::int32_t HeldLines::new_number() {
 
 void HeldLines::place(std::int32_t line, const PlacedLine& placed) {
   auto& held = lines_[line];
-  held.placed = placed;
-  held.rank = placed_count_++;
   held.chords.assign(placed.chords.begin(), placed.chords.end());
-  held.placed.chords = {};
+  held.is_closed = placed.is_closed;
+  held.stop_reasons = placed.stop_reasons;
+  held.length = 0;
+  for (const auto& chord : held.chords) held.length += chord.length;
+  held.rank = placed_count_++;
   held.beyond = {};
+  const auto ahead = chords_ahead(sheet_, placed);
   for (const int end : {0, 1}) {
-    if (const auto& chord = placed.ahead[end]) held.beyond[end] = {chord->triangle(), chord->coordinate};
+    if (const auto& chord = ahead[end]) held.beyond[end] = {chord->triangle(), chord->coordinate};
   }
   put_back(line);
 }

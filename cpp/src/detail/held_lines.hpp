@@ -14,9 +14,11 @@ namespace pectinate::detail {
 
 /// A line that can be taken out and put back.
 struct HeldLine {
-  PlacedLine placed;
-  std::int64_t rank;  ///< how many lines were placed before
   std::vector<Chord> chords;
+  bool is_closed = false;
+  std::array<StopReason, 2> stop_reasons{};
+  double length = 0;
+  std::int64_t rank = 0;  ///< how many lines were placed before
   /// The chords that would follow at its ends if no other line were near: only where one is.
   std::array<std::optional<ChordPlace>, 2> beyond;
 };
@@ -24,7 +26,7 @@ struct HeldLine {
 /// Lines by number: those that lie on the surface, and those that were taken out and may come back.
 class HeldLines {
  public:
-  explicit HeldLines(const Sheet& sheet) : ends_(sheet.crossings.size()) {}
+  explicit HeldLines(const Sheet& sheet) : sheet_(sheet), ends_(sheet.crossings.size()) {}
 
   const HeldLine& operator[](std::int32_t line) const { return lines_[line]; }
   bool is_out(std::int32_t line) const { return positions_[line] < 0; }
@@ -37,12 +39,16 @@ class HeldLines {
   std::int32_t new_number();
   /// Puts a new line on the surface.
   void place(std::int32_t line, const PlacedLine& placed);
+  PlacedLine placed(std::int32_t line) const {
+    return {lines_[line].chords, lines_[line].is_closed, lines_[line].stop_reasons};
+  }
   void take_out(std::int32_t line);
   void put_back(std::int32_t line);
   /// Gives up a line that was taken out.
   void forget(std::int32_t line) { unused_.push_back(line); }
 
  private:
+  const Sheet& sheet_;
   std::int64_t placed_count_ = 0;
   std::vector<HeldLine> lines_;
   std::vector<std::int32_t> positions_;  // per line: where it is among those present; negative: out

@@ -206,16 +206,6 @@ class EndExtender {
 
 }  // namespace
 
-std::optional<Chord> chord_ahead(const Sheet& sheet, const Chord& chord) {
-  const Role exit = exit_side(sheet, chord);
-  const auto way_out = sheet.crossings[chord.triangle()].exit(exit);
-  if (way_out.triangle < 0) return std::nullopt;
-  const auto& crossings = sheet.crossings[way_out.triangle];
-  const double position = edge_position(sheet.crossings[chord.triangle()], exit, chord.coordinate);
-  const double coordinate = chord_coordinate(crossings, way_out.role, position);
-  return make_chord(sheet, {way_out.triangle, coordinate}, exit_role(crossings, way_out.role, coordinate) == low_high);
-}
-
 void extend_ends(const StreamlineTracer& tracer, double clearance, const std::vector<ChordsAhead>& ahead,
                  Placement& placement) {
   EndExtender(tracer, clearance, placement).run(ahead);

@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
 #include <vector>
 
-#include "detail/sheet.hpp"
 #include "detail/trajectories.hpp"
 #include "pectinate/placement.hpp"
 #include "pectinate/tracing.hpp"
 
 namespace pectinate::detail {
-
-/// The chord that follows on one across the side through which that leaves.
-std::optional<Chord> chord_ahead(const Sheet& sheet, const Chord& chord);
 
 /// Lets streamlines run on into the chords ahead, one after the other, as far as they keep `clearance` separation
 /// distances from all others, whether on the surface or in space, and d_sep from their own parts (criterion 5).

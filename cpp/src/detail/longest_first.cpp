@@ -13,7 +13,6 @@
 #include "detail/chord_sides.hpp"
 #include "detail/chord_tracer.hpp"
 #include "detail/closed_orbit.hpp"
-#include "detail/line_ends.hpp"
 #include "detail/self_free_parts.hpp"
 #include "detail/sheet.hpp"
 #include "detail/trajectories.hpp"
@@ -393,13 +392,12 @@ class LineFiller::Implementation {
     if (std::ranges::any_of(chords, [&](const Chord& chord) { return is_stopped(chord); })) return;
     const bool can_start = !std::ranges::all_of(chords, [&](const Chord& chord) { return is_unseeded(chord); });
     if (!can_start && !is_long(candidates_.length(piece.stretch()), piece.stretch())) return;
-    make_polyline(piece.stretch());
+    make_polyline(piece.stretch(), true);
     place_polyline(piece.stretch(), piece.trajectory());
   }
 
   /// Places the stretch whose polyline is at hand.
   void place_polyline(const Stretch& stretch, std::int32_t trajectory) {
-    if (candidates_.trajectory(trajectory).is_closed()) polyline_.points.back() = polyline_.points.front();
     const auto line = make_line(stretch, trajectory);  // while what stops it is not yet in its own neighbourhood
     const auto& changed = mark_(polyline_);
     place_(line);
@@ -407,45 +405,20 @@ class LineFiller::Implementation {
     push_hugging(changed);
   }
 
-  void make_polyline(const Stretch& stretch) {
-    polyline_.points.clear();
-    polyline_.triangles.clear();
-    polyline_.chords.clear();
-    for (auto i = stretch.first; i < stretch.last; ++i) {
-      const auto& chord = chords_[i];
-      if (i == stretch.first) polyline_.points.push_back(point_on(sheet_, chord, entry_side(sheet_, chord)));
-      polyline_.points.push_back(point_on(sheet_, chord, exit_side(sheet_, chord)));
-      polyline_.triangles.push_back(chord.triangle());
-      polyline_.chords.push_back(chord.coordinate);
-    }
+  void make_polyline(const Stretch& stretch, bool is_closed = false) {
+    polyline_.follow(sheet_, candidates_.chords_of(stretch), is_closed);
   }
 
-  /// The streamline of the stretch whose polyline is at hand.
   PlacedLine make_line(const Stretch& stretch, std::int32_t trajectory) const {
-    PlacedLine line;
-    line.points = polyline_.points;
-    line.chords = candidates_.chords_of(stretch);
-    for (auto i = stretch.first; i < stretch.last; ++i) {
-      line.triangles.push_back(sheet_.mesh_triangles[chords_[i].triangle()]);
-    }
-    line.barycentric =
-        weights_along(sheet_, candidates_.chords_of(stretch), candidates_.trajectory(trajectory).is_closed());
-    for (std::size_t i = 1; i < polyline_.points.size(); ++i) {
-      line.length += (polyline_.points[i] - polyline_.points[i - 1]).norm();
-    }
     const auto& whole = candidates_.trajectory(trajectory);
     const auto reason_at = [&](std::int64_t outside) {
       const auto& chord = chords_[outside];
       return is_stopped(chord) ? occupancy_.stop_reason(chord.triangle(), chord.coordinate) : StopReason::near_itself;
     };
-    line.stop_reasons[0] = stretch.first == whole.first ? whole.ends[0] : reason_at(stretch.first - 1);
-    line.stop_reasons[1] = stretch.last == whole.stretch().last ? whole.ends[1] : reason_at(stretch.last);
-    Chord outwards[] = {chords_[stretch.first], chords_[stretch.last - 1]};
-    outwards[0].code ^= 1;
-    for (const int end : {0, 1}) {
-      if (line.stop_reasons[end] == StopReason::near_other) line.ahead[end] = chord_ahead(sheet_, outwards[end]);
-    }
-    return line;
+    return {candidates_.chords_of(stretch),
+            whole.is_closed(),
+            {stretch.first == whole.first ? whole.ends[0] : reason_at(stretch.first - 1),
+             stretch.last == whole.stretch().last ? whole.ends[1] : reason_at(stretch.last)}};
   }
 
   const SurfaceMesh& mesh_;

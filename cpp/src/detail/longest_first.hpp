@@ -1,31 +1,18 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "detail/chord_occupancy.hpp"
+#include "detail/placed_lines.hpp"
 #include "detail/trajectories.hpp"
-#include "detail/vec.hpp"
 #include "pectinate/surface_mesh.hpp"
 #include "pectinate/tracing.hpp"
 
 namespace pectinate::detail {
-
-/// A streamline to be placed.
-struct PlacedLine {
-  std::vector<Vector> points;
-  std::vector<std::int32_t> triangles;  ///< of the mesh, per segment
-  std::vector<Vec3> barycentric;        ///< per point, in the triangle of the segment after it, or of the last
-  double length = 0;
-  std::array<StopReason, 2> stop_reasons{};
-  ChordsAhead ahead;
-  std::span<const Chord> chords{};  ///< of the sheet, while it is being placed
-};
 
 /// Which lines there may be.
 struct LineRules {

@@ -37,15 +37,6 @@ void add_once(std::int32_t line, std::vector<std::int32_t>& lines) {
   if (!contains(lines, line)) lines.push_back(line);
 }
 
-Polyline polyline_of(const HeldLine& line) {
-  Polyline polyline{line.placed.points, {}, {}};
-  for (const auto& chord : line.chords) {
-    polyline.triangles.push_back(chord.triangle());
-    polyline.chords.push_back(chord.coordinate);
-  }
-  return polyline;
-}
-
 }  // namespace
 
 Polisher::Polisher(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const LineRules& rules,
@@ -74,11 +65,13 @@ bool Polisher::fill(const std::function<bool()>& go_on) {
 }
 
 std::int64_t Polisher::polish(const std::function<bool(std::int64_t)>& go_on) {
+  Polyline polyline;
   for (const auto line : lines_.present()) {
-    const auto polyline = polyline_of(lines_[line]);
+    const auto& held = lines_[line];
+    polyline.follow(sheet_, held.chords, held.is_closed);
     layers_.add(line, polyline);
     centres_.add(line, polyline, layers_.triangles(line));
-    total_length_ += lines_[line].placed.length;
+    total_length_ += held.length;
   }
   filler_.mark_with([this](const Polyline& line) -> const Numbers& {
     current_ = lines_.new_number();
@@ -100,7 +93,7 @@ std::int64_t Polisher::polish(const std::function<bool(std::int64_t)>& go_on) {
 void Polisher::for_each(const std::function<void(const PlacedLine&)>& place) const {
   auto numbers = lines_.present();
   std::ranges::sort(numbers, {}, [&](std::int32_t line) { return lines_[line].rank; });
-  for (const auto line : numbers) place(lines_[line].placed);
+  for (const auto line : numbers) place(lines_.placed(line));
 }
 
 void Polisher::play_round() {
@@ -140,7 +133,7 @@ std::vector<std::int32_t> Polisher::choose_to_grow() {
   Numbers chosen{line};
   for (const auto other : layers_.takers(beyond->triangle, beyond->coordinate)) add_once(other, chosen);
   double length = 0;
-  for (const auto one : chosen) length += lines_[one].placed.length;
+  for (const auto one : chosen) length += lines_[one].length;
   if (length > longest_to_grow * mean_length()) return {};
   first_.push_back(middle_of(line));
   return chosen;
@@ -161,7 +154,7 @@ std::int32_t Polisher::draw_short_line() {
   auto shortest = draw_line();
   for (int drawn = 1; drawn < most_drawn; ++drawn) {
     const auto line = draw_line();
-    if (lines_[line].placed.length < lines_[shortest].placed.length) shortest = line;
+    if (lines_[line].length < lines_[shortest].length) shortest = line;
   }
   return shortest;
 }
@@ -172,7 +165,7 @@ void Polisher::choose_resting(Numbers& chosen) {
   for (const auto line : supports) {
     for (const auto t : layers_.triangles(line)) {
       for (const auto other : lines_.ending_before(t)) {
-        if (lines_[other].placed.length > longest_resting * mean_length()) continue;
+        if (lines_[other].length > longest_resting * mean_length()) continue;
         if (rests_on(other, t, supports)) add_once(other, chosen);
       }
     }
@@ -271,7 +264,7 @@ Polisher::Change Polisher::finished_change() {
 Polisher::Effect Polisher::effect_of(const Change& change) const {
   Effect effect;
   const auto count = [&](std::int32_t line, double sign) {
-    const double length = lines_[line].placed.length;
+    const double length = lines_[line].length;
     effect.count += sign;
     effect.length += sign * length;
     effect.squares += sign * length * length;

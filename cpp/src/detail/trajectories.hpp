@@ -28,8 +28,7 @@ struct ChordPlace {
 
 using Chords = LargeArray<Chord>;
 
-/// At the first and the last point of a line, the chord that it does not take because another is near; it runs away
-/// from the line.
+/// At the first and the last point of a line, the chord that follows, if it is asked for.
 using ChordsAhead = std::array<std::optional<Chord>, 2>;
 
 /// A stretch [first, last) of the stored chords.
