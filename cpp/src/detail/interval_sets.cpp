@@ -14,7 +14,10 @@ std::vector<Interval> IntervalSets::intervals(std::int32_t item) const {
 void IntervalSets::get_intervals(std::int32_t item, std::vector<Interval>& result) const {
   result.clear();
   if (is_full(item)) result.push_back({0, 1});
-  for (auto node = items_[item].first; node >= 0; node = nodes_[node].next) result.push_back(nodes_[node].interval);
+  for (auto node = items_[item].first; node >= 0; node = nodes_[node].next) {
+    result.push_back(interval_of(nodes_[node].range));
+  }
+
   std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.low < b.low; });
 }
 

@@ -13,7 +13,8 @@ namespace pectinate::detail {
 /// For each of many items, a subset of [0, 1]: a union of closed intervals. Most are empty, all of
 /// [0, 1], or one interval.
 ///
-/// Each item has a summary in sixteenths of [0, 1] that answers most questions.
+/// Each item has a summary in sixteenths of [0, 1] that answers most questions. Ends are rounded outwards, to 2^-31: so
+/// intervals take half the memory.
 class IntervalSets {
  public:
   explicit IntervalSets(std::size_t count) : items_(count) {
@@ -30,9 +31,10 @@ class IntervalSets {
     return (touched >> cell & 1) && contains(item, Interval{x, x});
   }
   bool contains(std::int32_t item, const Interval& interval) const {
+    const double low = interval.low * units, high = interval.high * units;
     auto node = items_[item].first;
     for (; node >= 0; node = nodes_[node].next) {
-      if (interval.low >= nodes_[node].interval.low && interval.high <= nodes_[node].interval.high) return true;
+      if (low >= nodes_[node].range.low && high <= nodes_[node].range.high) return true;
     }
     return node == full;
   }
@@ -42,7 +44,7 @@ class IntervalSets {
   void fill(std::int32_t item);
   void clear(std::int32_t item);
   /// Intervals that touch become one.
-  void add(std::int32_t item, Interval interval);
+  void add(std::int32_t item, const Interval& interval);
 
   /// The intervals in ascending order.
   std::vector<Interval> intervals(std::int32_t item) const;
@@ -53,17 +55,24 @@ class IntervalSets {
 
  private:
   static constexpr std::int32_t empty = -1, full = -2;
-  static constexpr std::size_t most_reserved = 2;  // nodes an item
-  static constexpr int cells = 16;
+  static constexpr std::size_t most_reserved = 4;  // nodes an item
+  static constexpr double units = std::uint32_t{1} << 31;
+  static constexpr int cells = 16, cell_bits = 27;  // units a cell
+  /// In units.
+  struct Range {
+    std::uint32_t low, high;
+  };
   struct Item {
     std::int32_t first = empty;            // node, empty or full
     std::uint16_t taken = 0, touched = 0;  // by cell: wholly, and at least partly
   };
   struct Node {
-    Interval interval;
+    Range range;
     std::int32_t next;
   };
 
+  static Range range_around(const Interval& interval);
+  static Interval interval_of(const Range& range) { return {range.low / units, range.high / units}; }
   std::int32_t make_node(const Node& node);
   void release(std::int32_t node);
   void release_all(std::int32_t node);
@@ -83,15 +92,24 @@ inline void IntervalSets::clear(std::int32_t item) {
   items_[item] = {};
 }
 
-inline void IntervalSets::add(std::int32_t item, Interval interval) {
-  if (is_full(item)) return;
+/// What is no number reaches to the end.
+inline IntervalSets::Range IntervalSets::range_around(const Interval& interval) {
+  const double low = interval.low > 0 ? interval.low * units : 0,
+               high = interval.high < 1 ? interval.high * units : units;
+  const auto low_unit = static_cast<std::uint32_t>(low), high_unit = static_cast<std::uint32_t>(high);
+  return {low_unit, high_unit + (high_unit < high)};
+}
+
+inline void IntervalSets::add(std::int32_t item, const Interval& interval) {
+  if (is_full(item) || interval.high < 0 || interval.low > 1) return;
+  auto range = range_around(interval);
   // Take out what it touches, then put in the union.
   auto before = empty;
   auto& [first, taken, touched] = items_[item];
   for (auto node = first; node >= 0;) {
     const auto [other, next] = nodes_[node];
-    if (other.low <= interval.high && other.high >= interval.low) {
-      interval = {std::min(interval.low, other.low), std::max(interval.high, other.high)};
+    if (other.low <= range.high && other.high >= range.low) {
+      range = {std::min(range.low, other.low), std::max(range.high, other.high)};
       (before >= 0 ? nodes_[before].next : first) = next;
       release(node);
     } else {
@@ -99,18 +117,18 @@ inline void IntervalSets::add(std::int32_t item, Interval interval) {
     }
     node = next;
   }
-  if (interval.low <= 0 && interval.high >= 1) {
+  if (range.low == 0 && range.high == units) {
     fill(item);
   } else {
-    first = make_node({interval, first});
-    // Cells [low, high), rounded inwards and outwards; a power of two scales exactly.
-    const auto bits = [](int from, int to) {
+    first = make_node({range, first});
+    // Cells [from, to), rounded inwards and outwards.
+    const auto bits = [](unsigned from, unsigned to) {
       return static_cast<std::uint16_t>(from < to ? (1U << to) - (1U << from) : 0U);
     };
-    const double low = std::max(interval.low, 0.0) * cells, high = std::min(interval.high, 1.0) * cells;
-    const int low_cell = static_cast<int>(low), high_cell = static_cast<int>(high);
-    taken |= bits(low_cell + (low > low_cell), high_cell);
-    touched |= bits(std::min(low_cell, cells - 1), std::min(high_cell + 1, cells));
+    const unsigned low = range.low >> cell_bits, high = range.high >> cell_bits;
+    const bool is_at_end = low << cell_bits == range.low;
+    taken |= bits(low + !is_at_end, high);
+    touched |= bits(std::min(low, cells - 1U), std::min(high + 1U, 0U + cells));
   }
 }
 
