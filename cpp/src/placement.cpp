@@ -339,6 +339,7 @@ double place_longest(const Ground& ground, const PlacementOptions& options, Prog
     detail::PlacedLines lines(most_points(ground.tracer));
     coverage = find_longest(ground, options, progress, lines, placement);
     lines.write(sheet, placement);
+    ahead.reserve(lines.count());
     for (std::size_t i = 0; i < lines.count(); ++i) ahead.push_back(chords_ahead(sheet, lines[i]));
   }
   detail::extend_ends(ground.tracer, options.test_distance, ahead, placement);

@@ -9,6 +9,8 @@ namespace {
 
 /// Chords per triangle: before there are more than the first, none are dropped; more than the second are too many.
 constexpr double most_usual_chords = 3.5, too_many_chords = 12;
+/// With more than this, pieces are first cut to what is still free.
+constexpr double many_chords = 7;
 /// Memory is reserved for more, because it costs nothing as long as it is not written to; to move what is stored to a
 /// larger place would take twice as much.
 constexpr double most_reserved_chords = 14, most_reserved_pieces = 2;
@@ -23,6 +25,7 @@ Candidates::Candidates(std::size_t triangle_count, double minimum_length, const 
     return static_cast<std::size_t>(factor * static_cast<double>(triangle_count));
   };
   most_chords_ = times(most_usual_chords);
+  many_chords_ = times(many_chords);
   too_many_chords_ = times(too_many_chords);
   chords_.reserve(times(most_reserved_chords));
   trajectories_.reserve(times(most_reserved_pieces));
@@ -72,6 +75,12 @@ void Candidates::clear() {
   heap_.clear();
 }
 
+std::vector<Piece> Candidates::take_pieces() {
+  std::vector<Piece> room;
+  room.reserve(heap_.capacity());
+  return std::exchange(heap_, std::move(room));
+}
+
 void Candidates::make_room() {
   std::size_t held = 0;
   for (const auto& piece : heap_) held += static_cast<std::size_t>(piece.length);
@@ -91,6 +100,7 @@ void Candidates::drop_shortest() {
 void Candidates::drop_dead_chords() {
   std::sort(heap_.begin(), heap_.end(), [](const Piece& a, const Piece& b) { return a.first < b.first; });
   std::vector<Trajectory> kept;
+  kept.reserve(heap_.size());
   std::int64_t read = 0, written = 0, shift = 0;  // chords up to `read` are where they shall be, or dropped
   std::int32_t trajectory = -1;
   for (auto& piece : heap_) {

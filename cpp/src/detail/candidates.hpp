@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "detail/trajectories.hpp"
@@ -46,13 +45,14 @@ class Candidates {
 
   /// Where trajectories run on and on beside one another they might take any amount of memory.
   bool are_too_many() const { return chords_.size() > too_many_chords_; }
+  bool are_many() const { return chords_.size() > many_chords_; }
   /// Are there many more chords than were left last time?
   bool needs_room() const { return are_too_many() || chords_.size() > most_chords_; }
   /// Drops chords that no piece holds, except where pieces were cut off; and where even so they are nearly too many,
   /// the shortest pieces. Then trajectories have other numbers and chords other places; the order of pieces stays.
   void make_room();
   /// Takes all pieces out.
-  std::vector<Piece> take_pieces() { return std::exchange(heap_, {}); }
+  std::vector<Piece> take_pieces();
 
  private:
   void prefetch_next() const;
@@ -68,7 +68,7 @@ class Candidates {
   Chords chords_;
   std::vector<Trajectory> trajectories_;
   std::vector<Piece> heap_;
-  std::size_t most_chords_, too_many_chords_;
+  std::size_t most_chords_, many_chords_, too_many_chords_;
 };
 
 }  // namespace pectinate::detail

@@ -35,6 +35,7 @@ class EndExtender {
       : tracer_(tracer), sheet_(tracer.sheet()), clearance_(clearance), placement_(placement) {}
 
   void run(const std::vector<ChordsAhead>& ahead) {
+    extensions_.reserve(2 * ahead.size());
     for (std::size_t line = 0; line < ahead.size(); ++line) {
       for (const int end : {0, 1}) {
         const auto& chord = ahead[line][end];

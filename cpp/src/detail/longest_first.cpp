@@ -172,7 +172,7 @@ class LineFiller::Implementation {
   /// Drops what is of no use any more, where it takes much room.
   void make_room() {
     if (!candidates_.needs_room()) return;
-    if (candidates_.are_too_many()) look_again_at_all();
+    if (candidates_.are_many()) look_again_at_all();
     candidates_.make_room();
     self_free_parts_.forget();
   }
