@@ -8,10 +8,9 @@
 namespace pectinate::detail {
 namespace {
 
-/// From so far on points are kept of a trajectory, and so far from one another; in separation distances.
-constexpr double kept_from = 64, kept_every = 4;
-/// Of so many points one is compared with those before it.
-constexpr int compared_every = 2;
+/// From so far on, in separation distances, of so many chords of a trajectory the end of one is kept.
+constexpr double kept_from = 64;
+constexpr std::int64_t kept_every = 32;
 
 }  // namespace
 
@@ -27,7 +26,7 @@ std::array<StopReason, 2> ChordTracer::trace(const ChordPlace& start, bool mind_
   const Chord first = make_chord(sheet_, start, true);
   visited_.start(crossings_.size());
   visited_.revisit(start.triangle, start.coordinate, crossings.width, 0);
-  passed_count_ = 0;
+  has_passed_ = false;
   backwards_.clear();
   std::array<StopReason, 2> ends;
   ends[0] = walk(first, exit_role(crossings, low_high, start.coordinate), mind_others, backwards_);
@@ -46,7 +45,8 @@ StopReason ChordTracer::walk(const Chord& start, Role exit, bool mind_others, Ch
   const auto max_steps = tracer_.options().max_steps;
   const auto* crossings = &all[start.triangle()];
   double coordinate = start.coordinate;
-  double arc = 0, next_kept = separation_ > 0 ? kept_from * separation_ : std::numeric_limits<double>::infinity();
+  const double far = separation_ > 0 ? kept_from * separation_ : std::numeric_limits<double>::infinity();
+  double arc = 0;
   for (std::int64_t step = 0; step < max_steps; ++step) {
     const auto way_out = crossings->exit(exit);
     const auto triangle = way_out.triangle;
@@ -70,8 +70,7 @@ StopReason ChordTracer::walk(const Chord& start, Role exit, bool mind_others, Ch
     exit = exit_role(*crossings, way_out.role, coordinate);
     chords.push_back(make_chord(sheet_, {triangle, coordinate}, exit == low_high));
     arc += chords.back().length;
-    if (arc < next_kept) continue;
-    next_kept = arc + kept_every * separation_;
+    if (arc < far || step % kept_every != 0) continue;
     if (comes_back(chords.back(), &chords == &backwards_ ? -arc : arc)) return StopReason::near_itself;
   }
   return StopReason::max_steps;
@@ -80,8 +79,9 @@ StopReason ChordTracer::walk(const Chord& start, Role exit, bool mind_others, Ch
 /// Keeps the end of a chord, so far from the start; is it near another that was kept?
 bool ChordTracer::comes_back(const Chord& chord, double arc) {
   const Vector point = point_on(sheet_, chord, exit_side(sheet_, chord));
-  if (passed_count_++ == 0) passed_.start(separation_, point);
-  const bool is_near = passed_count_ % compared_every == 0 && passed_.is_near(point, arc);
+  if (!has_passed_) passed_.start(separation_, point);
+  has_passed_ = true;
+  const bool is_near = passed_.is_near(point, arc);
   passed_.add(point, arc);
   return is_near;
 }

@@ -46,7 +46,7 @@ class ChordTracer {
   double separation_;  // 0 where it varies
   VisitedChords visited_;
   SelfApproach passed_;  // points of the trajectory at hand
-  int passed_count_ = 0;
+  bool has_passed_ = false;
   Chords backwards_;
 };
 
