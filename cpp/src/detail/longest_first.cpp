@@ -30,7 +30,7 @@ constexpr double closed_bonus = 1e6;
 /// Beside streamlines this long, in chords, a candidate that hugs them makes others needless that would start in the
 /// next ring of triangles; beside those twice as long, in the next two. They are the first ones of smooth
 /// fields: hundreds of candidates beside each, nearly as long and hardly apart, would take most of the time.
-constexpr std::size_t long_to_hug = 1024;
+constexpr std::size_t long_to_hug = 512;
 constexpr int most_hugging_rings = 2;
 /// Seeds of hugging lines lie this far outside the band that they hug, in separation distances.
 constexpr double hugging_gap = 1e-6;
