@@ -312,6 +312,28 @@ TEST_CASE("interval sets: they hold the union of what was added") {
   }
 }
 
+TEST_CASE("interval sets: ends are rounded outwards, by less than 1e-9") {
+  Random random(9);
+  for (int round = 0; round < 2000; ++round) {
+    IntervalSets sets(1);
+    const double low = 1.2 * random.unit() - 0.1, high = low + std::exp(-25 * random.unit());
+    sets.add(0, {low, high});
+    if (high < 0 || low > 1) {
+      CHECK(sets.is_empty(0));
+      continue;
+    }
+    const auto intervals = sets.intervals(0);
+    REQUIRE(intervals.size() == 1);
+    CHECK((intervals[0].low <= std::max(low, 0.0) && intervals[0].low >= std::max(low, 0.0) - 1e-9));
+    CHECK((intervals[0].high >= std::min(high, 1.0) && intervals[0].high <= std::min(high, 1.0) + 1e-9));
+    for (const double x : {low, (low + high) / 2, high}) CHECK((x < 0 || x > 1 || sets.contains(0, x)));
+  }
+  IntervalSets sets(1);
+  const double no_number = std::numeric_limits<double>::quiet_NaN();
+  sets.add(0, {no_number, no_number});
+  CHECK(sets.is_full(0));  // to be on the safe side
+}
+
 TEST_CASE("interval sets: filled is filled, whatever was there and comes") {
   IntervalSets sets(3);
   CHECK(sets.is_empty(1));
