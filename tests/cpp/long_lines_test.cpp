@@ -46,6 +46,22 @@ TEST_CASE("long lines: they are even and complete, whatever candidates are left 
   }
 }
 
+TEST_CASE("long lines: what a spiral leaves of itself is no nearer to itself than the rest") {
+  const auto mesh = jittered_grid(60, 60).mesh();
+  for (const double slope : {0.01, 0.03, 0.06}) {
+    const auto field = field_of(mesh, [&](const Vector& c, const Vector&) -> Vector {
+      const Vector out(c.x() - 30.1, c.y() - 29.8, 0);
+      return Vector(-out.y(), out.x(), 0) + slope * out;
+    });
+    for (const double separation : {2.5, 4.0, 7.0}) {
+      const auto placement = checked(mesh, field, with(separation));
+      check_segment_separation(placement, separation);
+      check_self_separation(placement, separation);
+      check_complete(mesh, field, placement, 10);
+    }
+  }
+}
+
 TEST_CASE("long lines: what comes far ends where it has come back to itself") {
   const auto mesh = torus(200, 80).mesh();
   const auto field = helices(mesh);
