@@ -14,12 +14,13 @@ constexpr std::int64_t kept_every = 32;
 
 }  // namespace
 
-ChordTracer::ChordTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy)
+ChordTracer::ChordTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy, bool winds_on)
     : tracer_(tracer),
       occupancy_(occupancy),
       sheet_(tracer.sheet()),
       crossings_(sheet_.crossings),
-      separation_(tracer.options().separation_distances.empty() ? tracer.options().separation_distance : 0) {}
+      separation_(tracer.options().separation_distances.empty() ? tracer.options().separation_distance : 0),
+      far_(winds_on || separation_ == 0 ? std::numeric_limits<double>::infinity() : kept_from * separation_) {}
 
 std::array<StopReason, 2> ChordTracer::trace(const ChordPlace& start, bool mind_others, Chords& chords) {
   const auto& crossings = crossings_[start.triangle];
@@ -45,7 +46,6 @@ StopReason ChordTracer::walk(const Chord& start, Role exit, bool mind_others, Ch
   const auto max_steps = tracer_.options().max_steps;
   const auto* crossings = &all[start.triangle()];
   double coordinate = start.coordinate;
-  const double far = separation_ > 0 ? kept_from * separation_ : std::numeric_limits<double>::infinity();
   double arc = 0;
   for (std::int64_t step = 0; step < max_steps; ++step) {
     const auto way_out = crossings->exit(exit);
@@ -70,7 +70,7 @@ StopReason ChordTracer::walk(const Chord& start, Role exit, bool mind_others, Ch
     exit = exit_role(*crossings, way_out.role, coordinate);
     chords.push_back(make_chord(sheet_, {triangle, coordinate}, exit == low_high));
     arc += chords.back().length;
-    if (arc < far || step % kept_every != 0) continue;
+    if (arc < far_ || step % kept_every != 0) continue;
     if (comes_back(chords.back(), &chords == &backwards_ ? -arc : arc)) return StopReason::near_itself;
   }
   return StopReason::max_steps;

@@ -17,7 +17,8 @@ namespace pectinate::detail {
 /// until by chance it comes to a triangle for the second time.
 class ChordTracer {
  public:
-  ChordTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy);
+  /// Who looks for closed curves needs trajectories that wind on and on, up to these.
+  ChordTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy, bool winds_on = false);
 
   /// d_sep in a triangle of the sheet.
   double separation(std::int32_t triangle) const {
@@ -44,6 +45,7 @@ class ChordTracer {
   const Sheet& sheet_;
   const LargeArray<TriangleCrossings>& crossings_;
   double separation_;  // 0 where it varies
+  double far_;         // from where on it is looked for what comes back
   VisitedChords visited_;
   SelfApproach passed_;  // points of the trajectory at hand
   bool has_passed_ = false;

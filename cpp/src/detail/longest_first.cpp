@@ -9,10 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "detail/candidate_tracer.hpp"
 #include "detail/candidates.hpp"
-#include "detail/chord_sides.hpp"
-#include "detail/chord_tracer.hpp"
-#include "detail/closed_orbit.hpp"
 #include "detail/self_free_parts.hpp"
 #include "detail/sheet.hpp"
 #include "detail/trajectories.hpp"
@@ -54,8 +52,6 @@ class LineFiller::Implementation {
       : mesh_(mesh),
         sheet_(tracer.sheet()),
         crossings_(sheet_.crossings),
-        chord_tracer_(tracer, occupancy),
-        close_loops_(rules.close_loops),
         occupancy_(occupancy),
         place_(std::move(place)),
         mark_([this](const Polyline& line) -> const std::vector<std::int32_t>& {
@@ -64,6 +60,7 @@ class LineFiller::Implementation {
         }),
         candidates_(crossings_.size(), rules.minimum_length,
                     {closed_bonus, occupancy.has_seed_sets() ? hugging_bonus_with_room : hugging_bonus}),
+        candidate_tracer_(tracer, occupancy, rules.close_loops, candidates_),
         hugged_(crossings_.size(), 0) {}
 
   bool fill(const std::function<bool()>& go_on) {
@@ -89,45 +86,7 @@ class LineFiller::Implementation {
   }
 
  private:
-  double separation(std::int32_t triangle) const { return chord_tracer_.separation(triangle); }
-
-  // Trajectories ----------------------------------------------------------------------------------------------------
-
-  /// Stores the trajectory through a chord as a candidate.
-  Trajectory add_trajectory(std::int32_t triangle, double coordinate, bool mind_others, bool hugs) {
-    const auto first = std::ssize(chords_);
-    const auto ends = chord_tracer_.trace({triangle, coordinate}, mind_others, chords_);
-    const Trajectory trajectory({first, std::ssize(chords_)}, ends, hugs);
-    candidates_.add(trajectory);
-    if (close_loops_) add_closed(trajectory);
-    return trajectory;
-  }
-
-  /// Stores the closed curves that a trajectory winds onto.
-  void add_closed(const Trajectory& trajectory) {
-    const auto [first, last] = trajectory.stretch();
-    Chord starts[] = {chords_[first], chords_[last - 1]};
-    starts[0].code ^= 1;  // backwards
-    for (const int end : {0, 1}) {
-      if (trajectory.ends[end] != StopReason::near_itself) continue;
-      add_closed(closed_orbit(sheet_, starts[end], last - first), trajectory.hugs);
-    }
-  }
-
-  /// Stores a closed curve as a candidate, if it is free and not too near itself.
-  void add_closed(const Chords& orbit, bool hugs) {
-    if (orbit.empty() || std::ranges::any_of(orbit, [&](const Chord& chord) { return is_stopped(chord); })) return;
-    const Stretch stretch{std::ssize(chords_), std::ssize(chords_) + std::ssize(orbit)};
-    chords_.insert(chords_.end(), orbit.begin(), orbit.end());
-    make_polyline(stretch);
-    double distance = 0;
-    for (const auto& chord : orbit) distance = std::max(distance, separation(chord.triangle()));
-    if (keeps_from_itself(polyline_.points, distance)) {
-      candidates_.add({stretch, {StopReason::closed, StopReason::closed}, hugs});
-    } else {
-      chords_.resize(static_cast<std::size_t>(stretch.first));
-    }
-  }
+  double separation(std::int32_t triangle) const { return candidate_tracer_.separation(triangle); }
 
   // Candidates ------------------------------------------------------------------------------------------------------
 
@@ -145,7 +104,7 @@ class LineFiller::Implementation {
         seeds.pop_back();
         if (served[t] || occupancy_.stopped().is_full(t)) continue;
         if (!go_on()) return false;
-        const auto stretch = add_trajectory(t, 0.5, false, false).stretch();
+        const auto stretch = candidate_tracer_.add({t, 0.5}, false, false).stretch();
         std::vector<std::int32_t> crossed;
         for (const auto& chord : candidates_.chords_of(stretch)) {
           if (!is_local && has_been_crossed[chord.triangle()]) continue;  // all around it is served
@@ -191,7 +150,7 @@ class LineFiller::Implementation {
         for (const double coordinate : {low - gap, high + gap}) {
           if (!(coordinate > least_position && coordinate < 1 - least_position)) continue;
           if (occupancy_.unseeded().contains(t, coordinate)) continue;
-          const auto stretch = add_trajectory(t, coordinate, true, true).stretch();
+          const auto stretch = candidate_tracer_.add({t, coordinate}, true, true).stretch();
           for (auto i = stretch.first; i < stretch.last; ++i) hugged_[chords_[i].triangle()] = round_;
         }
       }
@@ -209,7 +168,7 @@ class LineFiller::Implementation {
   /// A candidate from there, if that is free.
   void add_if_free(const ChordPlace& start) {
     if (occupancy_.stopped().contains(start.triangle, start.coordinate)) return;
-    const auto stretch = add_trajectory(start.triangle, start.coordinate, true, false).stretch();
+    const auto stretch = candidate_tracer_.add(start, true, false).stretch();
     for (auto i = stretch.first; i < stretch.last; ++i) hugged_[chords_[i].triangle()] = round_;
   }
 
@@ -260,7 +219,7 @@ class LineFiller::Implementation {
         const double middle = (gap.low + gap.high) / 2;
         if (occupancy_.unseeded().contains(t, middle)) continue;
         const auto before = candidates_.piece_count();
-        add_trajectory(t, middle, true, false);
+        candidate_tracer_.add({t, middle}, true, false);
         if (candidates_.piece_count() == before) occupancy_.retire_seed(t, gap);
       }
     }
@@ -281,7 +240,7 @@ class LineFiller::Implementation {
   /// Places the piece on top, if it still holds; or what is left of it goes back.
   void place_next() {
     const auto piece = candidates_.pop();
-    if (close_loops_ && candidates_.trajectory(piece.trajectory()).is_closed()) {
+    if (candidates_.trajectory(piece.trajectory()).is_closed()) {
       place_closed(piece);
     } else if (const auto best = longest_free(piece)) {
       const auto& [stretch, length] = *best;
@@ -376,7 +335,7 @@ class LineFiller::Implementation {
   }
 
   /// Does what does not come back to itself never do so, wherever it begins?
-  bool keeps_self_free() const { return chord_tracer_.separation() > 0; }
+  bool keeps_self_free() const { return candidate_tracer_.separation() > 0; }
 
   /// Puts back what the longest such part leaves, where possible under the length of its own such part: else what winds
   /// and winds would be looked at again and again.
@@ -424,13 +383,12 @@ class LineFiller::Implementation {
   const SurfaceMesh& mesh_;
   const Sheet& sheet_;
   const LargeArray<TriangleCrossings>& crossings_;
-  ChordTracer chord_tracer_;
-  bool close_loops_;
   ChordOccupancy& occupancy_;
   Place place_;
   Mark mark_;
 
   Candidates candidates_;
+  CandidateTracer candidate_tracer_;
   Chords& chords_ = candidates_.chords();
   std::int64_t placed_count_ = 0;
 
