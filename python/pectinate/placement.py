@@ -113,8 +113,9 @@ def place_streamlines(
         covered. Exact occupancy only.
     polishing_rounds : int
         Rounds of polishing after the placement, 0 for none: each takes out a few streamlines that lie together and
-        fills their place with others. In the end the mean length is greater, total length and coverage are no less,
-        and everything else is as promised. Which places are tried depends on `random_seed`. Method "longest" only.
+        fills their place with others. In the end the mean length is greater, total length and coverage are no less
+        (as they are before ends run on into the midst of triangles), and everything else is as promised. Which places
+        are tried depends on `random_seed`. Method "longest" only.
     polishing_time : float
         Seconds of wall time after which polishing ends; 0 is no limit. Without `polishing_rounds` there are as many
         rounds as there is time for; `statistics.polishing_rounds` tells how many that were, and so many without a limit
@@ -176,7 +177,8 @@ class Placement:
         What the streamlines lie on.
     points
         (N, 3) float64, mm: all streamlines, one after the other. Each lies on an edge, but for ends of method
-        "longest" that stop near others: those are where the others are d_sep away, in the midst of triangles.
+        "longest" that stop near others: those are where the others are d_sep away, in the midst of triangles
+        (on edges where the rest of the triangle is longer than 64 d_sep).
     offsets
         (n + 1,) int64: streamline i owns points[offsets[i]:offsets[i + 1]].
     segment_triangles

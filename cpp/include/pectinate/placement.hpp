@@ -58,8 +58,9 @@ struct PlacementOptions {
   /// occupancy only.
   double singularity_radius = 0;
   /// Rounds of polishing after the placement: each takes out a few streamlines that lie together and fills their place
-  /// with others, so that in the end the mean length is greater, total length and coverage no less, and all else as
-  /// promised. 0 is none, but if `polishing_time` is not 0, as many as there is time for. Method `longest` only.
+  /// with others, so that in the end the mean length is greater, total length and coverage no less (as they are before
+  /// ends run on into the midst of triangles), and all else as promised. 0 is none, but if `polishing_time` is not 0, as
+  /// many as there is time for. Method `longest` only.
   std::int64_t polishing_rounds = 0;
   /// Seconds of wall time after which polishing ends, >= 0; 0 is no limit. `PlacementStatistics` has the number of
   /// rounds, and so many without a limit give the same bytes.
@@ -75,7 +76,7 @@ struct PlacementOptions {
 /// Evenly spaced streamlines, one after the other in the order of placement. Streamline i owns the points
 /// [offsets[i], offsets[i + 1]) and the segments [offsets[i] - i, offsets[i + 1] - i - 1). Points lie on edges, but for
 /// ends of method `longest` that stop near others: those are where the others are d_sep away, in the midst of
-/// triangles.
+/// triangles (on edges where the rest of the triangle is longer than 64 d_sep).
 struct Placement {
   std::vector<Vec3> points;
   std::vector<std::int64_t> offsets;            ///< streamline count + 1
