@@ -68,7 +68,7 @@ TEST_CASE("long lines: what comes far ends where it has come back to itself") {
   for (const double separation : {0.3, 0.5}) {
     const StreamlineTracer tracer(mesh, field, {separation});
     const detail::ChordOccupancy occupancy(mesh, tracer, {});
-    detail::ChordTracer chord_tracer(tracer, occupancy);
+    detail::ChordTracer chord_tracer(tracer, occupancy, {});
     detail::Chords chords;
     const auto ends = chord_tracer.trace({0, 0.5}, false, chords);
     CHECK((ends[0] == StopReason::near_itself && ends[1] == StopReason::near_itself));

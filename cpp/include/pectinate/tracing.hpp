@@ -36,7 +36,9 @@ enum class StopReason : std::uint8_t {
   boundary,     ///< criterion 2: a border of the surface, or a cut at a non-manifold edge
   near_other,   ///< criterion 3: another streamline is closer than the separation distance
   abrupt_turn,  ///< criterion 4: the field turns by more than `abrupt_turn_angle` across the edge, or makes a U-turn
-  near_itself,  ///< criterion 5: a part of it more than 2 d_sep back, or in the same triangle, is closer than d_sep
+  /// Criterion 5: a part of it more than 2 d_sep back, or in the same triangle, is closer than d_sep. Of a placed
+  /// streamline it may be that the curve of which it is a part came back to itself, and the other part was left out.
+  near_itself,
   no_field,     ///< the triangle ahead has no direction
   closed,       ///< it has no end: its last point is its first, bit for bit
   singularity,  ///< the field is singular nearer than `singularity_radius`

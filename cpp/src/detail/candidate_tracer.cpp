@@ -7,12 +7,12 @@
 
 namespace pectinate::detail {
 
-CandidateTracer::CandidateTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy, bool close_loops,
-                                 Candidates& candidates)
+CandidateTracer::CandidateTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy,
+                                 const LineRules& rules, Candidates& candidates)
     : sheet_(tracer.sheet()),
       occupancy_(occupancy),
-      close_loops_(close_loops),
-      chord_tracer_(tracer, occupancy, close_loops),
+      close_loops_(rules.close_loops),
+      chord_tracer_(tracer, occupancy, rules),
       candidates_(candidates) {}
 
 Trajectory CandidateTracer::add(const ChordPlace& start, bool mind_others, bool hugs) {

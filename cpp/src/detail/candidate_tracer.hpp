@@ -10,15 +10,15 @@ namespace pectinate::detail {
 /// Traces trajectories and stores them as candidates.
 class CandidateTracer {
  public:
-  /// Closed curves of the field become candidates, too, if asked.
-  CandidateTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy, bool close_loops,
+  CandidateTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy, const LineRules& rules,
                   Candidates& candidates);
 
   /// d_sep in a triangle of the sheet, and everywhere; that is 0 where it varies.
   double separation(std::int32_t triangle) const { return chord_tracer_.separation(triangle); }
   double separation() const { return chord_tracer_.separation(); }
 
-  /// Stores the trajectory through a chord, up to occupied ones if asked, and what closed curves it winds onto.
+  /// Stores the trajectory through a chord, up to occupied ones if asked; and the closed curves that it winds onto, if
+  /// the rules ask for them.
   Trajectory add(const ChordPlace& start, bool mind_others, bool hugs);
 
  private:

@@ -44,8 +44,16 @@ void Candidates::add(const Trajectory& trajectory) {
 }
 
 void Candidates::push(const Stretch& stretch, double length, std::int32_t trajectory, bool is_self_free) {
-  if (stretch.first >= stretch.last || length < minimum_length_) return;
-  heap_.emplace_back(key(length, trajectory), stretch, trajectory, is_self_free);
+  insert({key(length, trajectory), stretch, trajectory, is_self_free}, length);
+}
+
+void Candidates::push_back(const Piece& piece, const Stretch& stretch, double length) {
+  insert({key(piece, length), stretch, piece.trajectory(), piece.is_self_free()}, length);
+}
+
+void Candidates::insert(const Piece& piece, double length) {
+  if (piece.length <= 0 || length < minimum_length_) return;
+  heap_.push_back(piece);
   std::push_heap(heap_.begin(), heap_.end());
 }
 
@@ -65,8 +73,8 @@ void Candidates::prefetch_next() const {
   for (auto i = first; i < std::min(last, first + at_first); i += chords_per_line) __builtin_prefetch(&chords_[i]);
 }
 
-bool Candidates::is_first(double length, std::int32_t trajectory) const {
-  return length >= minimum_length_ && (heap_.empty() || key(length, trajectory) >= heap_.front().key);
+bool Candidates::comes_first(double length, double key) const {
+  return length >= minimum_length_ && (heap_.empty() || key >= heap_.front().key);
 }
 
 void Candidates::clear() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -33,12 +34,15 @@ class Candidates {
   void add(const Trajectory& trajectory);
 
   std::size_t piece_count() const { return heap_.size(); }
-  /// Puts a stretch of known length back into the heap.
+  /// Puts a stretch into the heap under a length: its own, or that of what may be placed of it.
   void push(const Stretch& stretch, double length, std::int32_t trajectory, bool is_self_free = false);
+  /// Puts a stretch of a piece back, under its own length or, if less, that of the piece.
+  void push_back(const Piece& piece, const Stretch& stretch, double length);
   /// Takes the longest piece out; there must be one.
   Piece pop();
-  /// Would a stretch of this length come first?
-  bool is_first(double length, std::int32_t trajectory) const;
+  /// Would a stretch of this length come first? And one put back?
+  bool is_first(double length, std::int32_t trajectory) const { return comes_first(length, key(length, trajectory)); }
+  bool is_first(const Piece& piece, double length) const { return comes_first(length, key(piece, length)); }
 
   /// Forgets all trajectories and pieces.
   void clear();
@@ -55,6 +59,9 @@ class Candidates {
   std::vector<Piece> take_pieces();
 
  private:
+  double key(const Piece& piece, double length) const { return std::min(key(length, piece.trajectory()), piece.key); }
+  bool comes_first(double length, double key) const;
+  void insert(const Piece& piece, double length);
   void prefetch_next() const;
   double key(double length, std::int32_t trajectory) const {
     const auto& whole = trajectories_[trajectory];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "detail/chord_tracer.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include "detail/chord_sides.hpp"
@@ -12,15 +13,24 @@ namespace {
 constexpr double kept_from = 64;
 constexpr std::int64_t kept_every = 32;
 
+/// d_sep, if it is the same everywhere, or 0.
+double common_separation(const TracingOptions& options) {
+  const auto& varying = options.separation_distances;
+  if (varying.empty()) return options.separation_distance;
+  const auto [least, greatest] = std::ranges::minmax(varying);
+  return least == greatest ? least : 0;
+}
+
 }  // namespace
 
-ChordTracer::ChordTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy, bool winds_on)
+ChordTracer::ChordTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy, const LineRules& rules)
     : tracer_(tracer),
       occupancy_(occupancy),
       sheet_(tracer.sheet()),
       crossings_(sheet_.crossings),
-      separation_(tracer.options().separation_distances.empty() ? tracer.options().separation_distance : 0),
-      far_(winds_on || separation_ == 0 ? std::numeric_limits<double>::infinity() : kept_from * separation_) {}
+      separation_(common_separation(tracer.options())),
+      far_(rules.close_loops || separation_ == 0 ? std::numeric_limits<double>::infinity()
+                                                 : std::max(kept_from * separation_, rules.minimum_length)) {}
 
 std::array<StopReason, 2> ChordTracer::trace(const ChordPlace& start, bool mind_others, Chords& chords) {
   const auto& crossings = crossings_[start.triangle];

@@ -12,13 +12,19 @@
 
 namespace pectinate::detail {
 
+/// Which lines there may be.
+struct LineRules {
+  double minimum_length = 0;
+  bool close_loops = false;  ///< closed curves of the field become closed lines
+};
+
 /// Traces trajectories from chord to chord. What has come far without an end, as they do on smooth fields, is looked at
 /// now and then: where it has come back to itself (criterion 5) it ends. So it needs not wind through all the surface
-/// until by chance it comes to a triangle for the second time.
+/// until by chance it comes to a triangle for the second time. But where closed curves are asked for it must: they are
+/// what it winds onto. Where d_sep varies, criterion 5 depends on where a line begins, and it winds on, too.
 class ChordTracer {
  public:
-  /// Who looks for closed curves needs trajectories that wind on and on, up to these.
-  ChordTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy, bool winds_on = false);
+  ChordTracer(const StreamlineTracer& tracer, const ChordOccupancy& occupancy, const LineRules& rules);
 
   /// d_sep in a triangle of the sheet.
   double separation(std::int32_t triangle) const {

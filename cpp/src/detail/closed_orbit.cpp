@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "detail/chord_sides.hpp"
 #include "detail/crossings.hpp"
 #include "detail/self_free_run.hpp"
 
@@ -56,9 +57,7 @@ class Walk {
     return true;
   }
 
-  Chord chord() const {
-    return {coordinate_, static_cast<float>(chord_length(here(), coordinate_)), 2 * triangle_ + (exit_ == low_high)};
-  }
+  Chord chord() const { return make_chord(*sheet_, {triangle_, coordinate_}, exit_ == low_high); }
   double slope() const { return slope_; }
 
  private:

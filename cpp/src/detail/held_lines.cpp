@@ -19,8 +19,7 @@ void HeldLines::place(std::int32_t line, const PlacedLine& placed) {
   held.chords.assign(placed.chords.begin(), placed.chords.end());
   held.is_closed = placed.is_closed;
   held.stop_reasons = placed.stop_reasons;
-  held.length = 0;
-  for (const auto& chord : held.chords) held.length += chord.length;
+  held.length = length_of(sheet_, placed);
   held.rank = placed_count_++;
   held.beyond = {};
   const auto ahead = chords_ahead(sheet_, placed);

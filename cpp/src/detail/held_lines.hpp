@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "detail/longest_first.hpp"
+#include "detail/placed_lines.hpp"
 #include "detail/sheet.hpp"
 
 namespace pectinate::detail {

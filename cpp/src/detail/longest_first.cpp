@@ -26,7 +26,8 @@ constexpr double hugging_bonus = 1.05, hugging_bonus_with_room = 1.03;
 /// length.
 constexpr double closed_bonus = 1e6;
 /// Beside streamlines this long, in chords, a candidate that hugs them makes others needless that would start in the
-/// next ring of triangles; beside those twice as long, in the next two. They are the first ones of smooth
+/// next ring of triangles; beside those twice as long, in the next two, as long as these do not reach to the line's
+/// other side. They are the first ones of smooth
 /// fields: hundreds of candidates beside each, nearly as long and hardly apart, would take most of the time.
 constexpr std::size_t long_to_hug = 512;
 constexpr int most_hugging_rings = 2;
@@ -60,7 +61,7 @@ class LineFiller::Implementation {
         }),
         candidates_(crossings_.size(), rules.minimum_length,
                     {closed_bonus, occupancy.has_seed_sets() ? hugging_bonus_with_room : hugging_bonus}),
-        candidate_tracer_(tracer, occupancy, rules.close_loops, candidates_),
+        candidate_tracer_(tracer, occupancy, rules, candidates_),
         hugged_(crossings_.size(), 0) {}
 
   bool fill(const std::function<bool()>& go_on) {
@@ -244,10 +245,10 @@ class LineFiller::Implementation {
       place_closed(piece);
     } else if (const auto best = longest_free(piece)) {
       const auto& [stretch, length] = *best;
-      if (candidates_.is_first(length, piece.trajectory())) {
+      if (candidates_.is_first(piece, length)) {
         place_best(stretch, piece);
       } else {
-        candidates_.push(stretch, length, piece.trajectory(), piece.is_self_free());
+        candidates_.push_back(piece, stretch, length);
       }
     }
   }
@@ -256,10 +257,9 @@ class LineFiller::Implementation {
   void look_again_at_all() {
     for (const auto& piece : candidates_.take_pieces()) {
       if (candidates_.trajectory(piece.trajectory()).is_closed()) {
-        candidates_.push(piece.stretch(), candidates_.length(piece.stretch()), piece.trajectory(),
-                         piece.is_self_free());
+        candidates_.push_back(piece, piece.stretch(), candidates_.length(piece.stretch()));
       } else if (const auto best = longest_free(piece)) {
-        candidates_.push(best->stretch, best->length, piece.trajectory(), piece.is_self_free());
+        candidates_.push_back(piece, best->stretch, best->length);
       }
     }
   }
@@ -287,9 +287,9 @@ class LineFiller::Implementation {
       i = run.last;
       if (!can_start && !is_long(run_length, run)) continue;
       if (best && run_length <= best->length) {
-        candidates_.push(run, run_length, piece.trajectory(), piece.is_self_free());
+        candidates_.push_back(piece, run, run_length);
       } else {
-        if (best) candidates_.push(best->stretch, best->length, piece.trajectory(), piece.is_self_free());
+        if (best) candidates_.push_back(piece, best->stretch, best->length);
         best = {run, run_length};
       }
     }

@@ -7,18 +7,13 @@
 #include <vector>
 
 #include "detail/chord_occupancy.hpp"
+#include "detail/chord_tracer.hpp"
 #include "detail/placed_lines.hpp"
 #include "detail/trajectories.hpp"
 #include "pectinate/surface_mesh.hpp"
 #include "pectinate/tracing.hpp"
 
 namespace pectinate::detail {
-
-/// Which lines there may be.
-struct LineRules {
-  double minimum_length;
-  bool close_loops;  ///< closed curves of the field become closed lines
-};
 
 /// What lines left free when they were taken out of a full surface, and how it is filled again.
 struct FreedRegion {

@@ -18,12 +18,6 @@ std::optional<Chord> chord_ahead(const Sheet& sheet, const Chord& chord) {
   return make_chord(sheet, {way_out.triangle, coordinate}, exit_role(crossings, way_out.role, coordinate) == low_high);
 }
 
-double length_of(std::span<const Vec3> points) {
-  double length = 0;
-  for (std::size_t i = 1; i < points.size(); ++i) length += (vector(points[i]) - vector(points[i - 1])).norm();
-  return length;
-}
-
 }  // namespace
 
 ChordsAhead chords_ahead(const Sheet& sheet, const PlacedLine& line) {
@@ -34,6 +28,16 @@ ChordsAhead chords_ahead(const Sheet& sheet, const PlacedLine& line) {
     if (line.stop_reasons[end] == StopReason::near_other) ahead[end] = chord_ahead(sheet, outwards[end]);
   }
   return ahead;
+}
+
+double length_of(const Sheet& sheet, const PlacedLine& line) {
+  double length = 0;
+  Vector before = point_on(sheet, line.chords.front(), entry_side(sheet, line.chords.front()));
+  visit_points(sheet, line.chords, line.is_closed, [&](const Vector& point) {
+    length += (point - before).norm();
+    before = point;
+  });
+  return length;
 }
 
 void PlacedLines::add(const PlacedLine& line) {
@@ -69,7 +73,7 @@ void PlacedLines::write(const Sheet& sheet, const PlacedLine& line, Placement& p
   }
   placement.point_triangles.push_back(placement.segment_triangles.back());
   placement.offsets.push_back(std::ssize(placement.points));
-  placement.lengths.push_back(length_of(std::span(placement.points).subspan(first)));
+  placement.lengths.push_back(length_of(sheet, line));
   placement.stop_reasons.push_back(line.stop_reasons);
   placement.seed_points.push_back((first + std::ssize(placement.points)) / 2);
 }

@@ -24,6 +24,8 @@ struct PlacedLine {
 /// from the line.
 ChordsAhead chords_ahead(const Sheet& sheet, const PlacedLine& line);
 
+double length_of(const Sheet& sheet, const PlacedLine& line);
+
 /// Lines in the order in which they were placed, as chords: until all are there and nothing else is needed, these take
 /// less than a third of the memory of points with their triangles and weights.
 class PlacedLines {
