@@ -237,13 +237,6 @@ std::size_t most_points(const StreamlineTracer& tracer) {
   return static_cast<std::size_t>(std::min(width / least, most_reserved * tracer.sheet().triangle_count()));
 }
 
-void reserve(std::size_t point_count, Placement& placement) {
-  placement.points.reserve(point_count);
-  placement.barycentric.reserve(point_count);
-  placement.point_triangles.reserve(point_count);
-  placement.segment_triangles.reserve(point_count);
-}
-
 double directed_area(const SurfaceMesh& mesh, const OrientationField& field) {
   double area = 0;
   for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
@@ -281,7 +274,7 @@ double place_by_contest(const Ground& ground, const PlacementOptions& options, P
   const auto occupancy = options.occupancy == OccupancyModel::exact
                              ? make_exact_occupancy(mesh, tracer, clearance_of(options), singular)
                              : make_edge_mask(mesh, tracer);
-  reserve(most_points(tracer), placement);
+  detail::reserve(most_points(tracer), placement);
   SeedSource source(mesh, tracer, options);
   Contest contest(tracer, options.minimum_length, options.thread_count);
   while (true) {

@@ -46,6 +46,25 @@ TEST_CASE("long lines: they are even and complete, whatever candidates are left 
   }
 }
 
+TEST_CASE("long lines: parallel ones lie as close as they may, on both sides of each") {
+  const auto mesh = grid(600, 12).mesh();
+  const auto field = constant_field(mesh, Vector(1, 0, 0));
+  for (const double separation : {0.3, 0.6, 1.0, 1.5, 3.0}) {
+    const auto& statistics = place_streamlines(mesh, field, with(separation)).statistics;
+    CHECK(statistics.mean_length == doctest::Approx(600).epsilon(1e-9));
+    CHECK(statistics.mean_spacing <= 1.005 * separation);
+  }
+}
+
+TEST_CASE("long lines: separation distances that are all the same are one") {
+  const auto mesh = torus(100, 40).mesh();
+  const auto field = helices(mesh);
+  auto options = with(0.15);
+  const auto same = place_streamlines(mesh, field, options);
+  options.separation_distances.assign(mesh.triangle_count(), 0.15);
+  CHECK(same_bytes(same, place_streamlines(mesh, field, options)));
+}
+
 TEST_CASE("long lines: what a spiral leaves of itself is no nearer to itself than the rest") {
   const auto mesh = jittered_grid(60, 60).mesh();
   for (const double slope : {0.01, 0.03, 0.06}) {

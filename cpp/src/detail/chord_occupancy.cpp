@@ -9,7 +9,6 @@
 #include <optional>
 #include <utility>
 
-#include "detail/chord_sides.hpp"
 #include "detail/chords_near_vertices.hpp"
 
 namespace pectinate::detail {
@@ -35,17 +34,6 @@ constexpr float unknown = -1;
 constexpr std::int32_t none = -1;
 
 }  // namespace
-
-void Polyline::follow(const Sheet& sheet, std::span<const Chord> along, bool is_closed) {
-  points.clear();
-  triangles.clear();
-  chords.clear();
-  visit_points(sheet, along, is_closed, [&](const Vector& point) { points.push_back(point); });
-  for (const auto& chord : along) {
-    triangles.push_back(chord.triangle());
-    chords.push_back(chord.coordinate);
-  }
-}
 
 ChordOccupancy::ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const Clearance& clearance,
                                const SingularRegion& singular)

@@ -11,24 +11,14 @@
 #include "detail/capsule_marks.hpp"
 #include "detail/interval_sets.hpp"
 #include "detail/large_array.hpp"
+#include "detail/polyline.hpp"
 #include "detail/segments.hpp"
 #include "detail/sheet.hpp"
-#include "detail/trajectories.hpp"
 #include "detail/vec.hpp"
 #include "pectinate/occupancy.hpp"
 #include "pectinate/surface_mesh.hpp"
 
 namespace pectinate::detail {
-
-/// A polyline whose segment i lies in triangle i of the sheet, on the chord with coordinate i.
-struct Polyline {
-  std::vector<Vector> points;
-  std::vector<std::int32_t> triangles;
-  std::vector<double> chords;
-
-  /// Becomes that along these chords.
-  void follow(const Sheet& sheet, std::span<const Chord> along, bool is_closed);
-};
 
 /// For every triangle, which of its chords come within the separation distance of a streamline: exact for whole
 /// segments, anywhere on the surface.

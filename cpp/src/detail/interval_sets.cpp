@@ -17,7 +17,6 @@ void IntervalSets::get_intervals(std::int32_t item, std::vector<Interval>& resul
   for (auto node = items_[item].first; node >= 0; node = nodes_[node].next) {
     result.push_back(interval_of(nodes_[node].range));
   }
-
   std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.low < b.low; });
 }
 

@@ -44,13 +44,18 @@ constexpr double long_length = 9;
 /// Narrower gaps between occupied chords hold no streamline.
 constexpr double least_gap = 4 * least_position;
 
+/// Of equilateral triangles that take as much area.
+double mean_edge_length(const SurfaceMesh& mesh) {
+  return std::sqrt(4 / std::numbers::sqrt3 * mesh.area() / static_cast<double>(mesh.triangle_count()));
+}
+
 }  // namespace
 
 class LineFiller::Implementation {
  public:
   Implementation(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const LineRules& rules,
                  ChordOccupancy& occupancy, Place place)
-      : mesh_(mesh),
+      : mean_edge_length_(mean_edge_length(mesh)),
         sheet_(tracer.sheet()),
         crossings_(sheet_.crossings),
         occupancy_(occupancy),
@@ -96,7 +101,7 @@ class LineFiller::Implementation {
   bool fill_pool(const std::function<bool()>& go_on) {
     TriangleMarks served(crossings_.size(), 0), has_been_crossed(served);
     std::vector<std::int32_t> seeds;  // the last one is the next
-    const double sparse = sparse_separation * mean_edge_length();
+    const double sparse = sparse_separation * mean_edge_length_;
     const bool is_local = occupancy_.has_seed_sets();
     for (const auto first : sheet_.ranks) {  // in the mesh's order: the sheet's depends on the axes
       if (served[first]) continue;
@@ -124,11 +129,6 @@ class LineFiller::Implementation {
     return true;
   }
 
-  /// Of equilateral triangles that take as much area.
-  double mean_edge_length() const {
-    return std::sqrt(4 / std::numbers::sqrt3 * mesh_.area() / static_cast<double>(mesh_.triangle_count()));
-  }
-
   /// Drops what is of no use any more, where it takes much room.
   void make_room() {
     if (!candidates_.needs_room()) return;
@@ -140,8 +140,7 @@ class LineFiller::Implementation {
   /// Candidates that lie just outside the band of the streamline placed last.
   void push_hugging(const std::vector<std::int32_t>& changed) {
     ++round_;
-    const int rings =
-        std::min(static_cast<int>(std::bit_width(polyline_.triangles.size() / long_to_hug)), most_hugging_rings);
+    const int rings = rings_beside_hugging();
     for (const auto t : changed) {
       if (occupancy_.unseeded().is_full(t) || is_hugged_near(t, rings)) continue;
       make_room();  // what goes for want of it comes back when gaps are filled
@@ -156,6 +155,13 @@ class LineFiller::Implementation {
         }
       }
     }
+  }
+
+  /// Beside the streamline at hand; not so many that they reach across its band.
+  int rings_beside_hugging() const {
+    const auto wanted = static_cast<int>(std::bit_width(polyline_.triangles.size() / long_to_hug));
+    const double across = 2 * separation(polyline_.triangles.front()) / mean_edge_length_ - 1;
+    return static_cast<int>(std::clamp(across, 0.0, static_cast<double>(std::min(wanted, most_hugging_rings))));
   }
 
   /// Does a candidate cross the triangle that hugs the streamline placed last, or another so many rings around it?
@@ -380,7 +386,7 @@ class LineFiller::Implementation {
              stretch.last == whole.stretch().last ? whole.ends[1] : reason_at(stretch.last)}};
   }
 
-  const SurfaceMesh& mesh_;
+  double mean_edge_length_;
   const Sheet& sheet_;
   const LargeArray<TriangleCrossings>& crossings_;
   ChordOccupancy& occupancy_;

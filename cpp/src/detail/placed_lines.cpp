@@ -30,6 +30,13 @@ ChordsAhead chords_ahead(const Sheet& sheet, const PlacedLine& line) {
   return ahead;
 }
 
+void reserve(std::size_t point_count, Placement& placement) {
+  placement.points.reserve(point_count);
+  placement.barycentric.reserve(point_count);
+  placement.point_triangles.reserve(point_count);
+  placement.segment_triangles.reserve(point_count);
+}
+
 double length_of(const Sheet& sheet, const PlacedLine& line) {
   double length = 0;
   Vector before = point_on(sheet, line.chords.front(), entry_side(sheet, line.chords.front()));
@@ -52,11 +59,7 @@ PlacedLine PlacedLines::operator[](std::size_t line) const {
 }
 
 void PlacedLines::write(const Sheet& sheet, Placement& placement) const {
-  const auto segment_count = chords_.size() + 2 * count(), point_count = segment_count + count();
-  placement.points.reserve(point_count);
-  placement.barycentric.reserve(point_count);
-  placement.point_triangles.reserve(point_count);
-  placement.segment_triangles.reserve(segment_count);
+  reserve(chords_.size() + 3 * count(), placement);
   for (std::size_t line = 0; line < count(); ++line) write(sheet, (*this)[line], placement);
 }
 

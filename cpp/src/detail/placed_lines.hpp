@@ -24,6 +24,9 @@ struct PlacedLine {
 /// from the line.
 ChordsAhead chords_ahead(const Sheet& sheet, const PlacedLine& line);
 
+/// Makes room for so many points.
+void reserve(std::size_t point_count, Placement& placement);
+
 double length_of(const Sheet& sheet, const PlacedLine& line);
 
 /// Lines in the order in which they were placed, as chords: until all are there and nothing else is needed, these take
