@@ -57,11 +57,11 @@ TEST_CASE("long lines: parallel ones lie as close as they may, on both sides of 
 }
 
 TEST_CASE("long lines: separation distances that are all the same are one") {
-  const auto mesh = torus(100, 40).mesh();
+  const auto mesh = torus(200, 80).mesh();
   const auto field = helices(mesh);
-  auto options = with(0.15);
+  auto options = with(0.3);
   const auto same = place_streamlines(mesh, field, options);
-  options.separation_distances.assign(mesh.triangle_count(), 0.15);
+  options.separation_distances.assign(mesh.triangle_count(), 0.3);
   CHECK(same_bytes(same, place_streamlines(mesh, field, options)));
 }
 
