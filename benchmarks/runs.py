@@ -39,6 +39,8 @@ class Setup:
         An external checker to run on one result of each engine.
     log
         Told of every run.
+    again
+        Place once more in the same process, as stage "again": memory then is memory that was touched before.
     """
 
     folder: Path
@@ -47,6 +49,7 @@ class Setup:
     timeout: float
     checker: Path | None
     log: Callable[[str], None]
+    again: bool = False
 
 
 @dataclass
@@ -126,7 +129,12 @@ def run_case(scenario: Scenario, case: Case, arrays: Arrays, setup: Setup) -> li
     for repeat in range(1, repeats + 1):
         for row in rows:
             if not row.failure:
-                _run_once(row, asdict(case) | {"method": row.method, "random_seed": repeat}, arrays.area, setup)
+                _run_once(
+                    row,
+                    asdict(case) | {"method": row.method, "random_seed": repeat, "again": setup.again},
+                    arrays.area,
+                    setup,
+                )
                 outcome = row.failure or f"{row.seconds('cpu')[-1]:.2f} s CPU"
                 setup.log(f"{scenario.surface}, {case}: {row.name}, run {repeat} of {repeats}: {outcome}")
     for row in rows:

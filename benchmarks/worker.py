@@ -10,6 +10,7 @@ import json
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -70,19 +71,24 @@ def run_pectinate(arrays: Arrays, options: dict[str, Any]) -> Run:
             mesh = SurfaceMesh(data.vertices, data.triangles)
         with stages.stage("field"):
             field = OrientationField.from_triangle_vectors(mesh, arrays.field)
+        place = partial(
+            place_streamlines,
+            Model(mesh, field, data),
+            separation_distance=options["separation_distance"],
+            **method_options(options["method"]),
+            seed_count=options["seed_count"],
+            random_seed=options["random_seed"],
+            thread_count=options["threads"],
+        )
         memory.start_part()
         with stages.stage("placement"):
-            placement = place_streamlines(
-                Model(mesh, field, data),
-                separation_distance=options["separation_distance"],
-                **method_options(options["method"]),
-                seed_count=options["seed_count"],
-                random_seed=options["random_seed"],
-                thread_count=options["threads"],
-            )
+            placement = place()
     except Error as error:
         raise Refused(str(error)) from error
     peak_memory, placement_memory = memory.rise(), memory.part_rise()
+    if options["again"]:
+        with stages.stage("again"):
+            place()
     with stages.stage("tubes"):
         placement.tubes()
     input_triangles = mesh.input_triangle[placement.segment_triangles]
