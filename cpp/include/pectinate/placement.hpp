@@ -59,8 +59,8 @@ struct PlacementOptions {
   double singularity_radius = 0;
   /// Rounds of polishing after the placement: each takes out a few streamlines that lie together and fills their place
   /// with others, so that in the end the mean length is greater, total length and coverage no less (as they are before
-  /// ends run on into the midst of triangles), and all else as promised. 0 is none, but if `polishing_time` is not 0, as
-  /// many as there is time for. Method `longest` only.
+  /// ends run on into the midst of triangles), and all else as promised. 0 is none, but if `polishing_time` is not 0,
+  /// as many as there is time for. Method `longest` only.
   std::int64_t polishing_rounds = 0;
   /// Seconds of wall time after which polishing ends, >= 0; 0 is no limit. `PlacementStatistics` has the number of
   /// rounds, and so many without a limit give the same bytes.
