@@ -144,8 +144,8 @@ def _print_growth(title: str, surfaces: Sequence[SurfaceSource], edges: float, b
         rows.append(row)
         counts.append(len(arrays.triangles))
         sizes = _size_cells(row, separation)
-        again = f"{1e6 * row.best('cpu', PLACEMENT_AGAIN) / counts[-1]:.2f}"
-        lines.append([f"{counts[-1]:,}", f"{separation:.3g}", *_cost_cells(row, counts[-1]), *sizes, again])
+        sizes.append(f"{1e6 * row.best('cpu', PLACEMENT_AGAIN) / counts[-1]:.2f}")
+        lines.append([f"{counts[-1]:,}", f"{separation:.3g}", *_cost_cells(row, counts[-1]), *sizes])
     print(f"\n### {title}\n")
     print(align(["triangles", "d_sep mm", *COST_TITLES, "n", "L_avg / d_sep", "us a triangle, again"], lines, left=0))
     first, again, before = (

@@ -126,8 +126,8 @@ inline void IntervalSets::add(std::int32_t item, const Interval& interval) {
       return static_cast<std::uint16_t>(from < to ? (1U << to) - (1U << from) : 0U);
     };
     const unsigned low = range.low >> cell_bits, high = range.high >> cell_bits;
-    const bool is_at_end = low << cell_bits == range.low;
-    taken |= bits(low + !is_at_end, high);
+    const bool begins_cell = low << cell_bits == range.low;
+    taken |= bits(low + !begins_cell, high);
     touched |= bits(std::min(low, cells - 1U), std::min(high + 1U, 0U + cells));
   }
 }

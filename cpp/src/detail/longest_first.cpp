@@ -26,9 +26,9 @@ constexpr double hugging_bonus = 1.05, hugging_bonus_with_room = 1.03;
 /// length.
 constexpr double closed_bonus = 1e6;
 /// Beside streamlines this long, in chords, a candidate that hugs them makes others needless that would start in the
-/// next ring of triangles; beside those twice as long, in the next two, as long as these do not reach to the line's
-/// other side. They are the first ones of smooth
-/// fields: hundreds of candidates beside each, nearly as long and hardly apart, would take most of the time.
+/// next ring of triangles; beside those twice as long, in the next two, where these do not reach to the line's other
+/// side. They are the first ones of smooth fields: hundreds of candidates beside each, nearly as long and hardly apart,
+/// would take most of the time.
 constexpr std::size_t long_to_hug = 512;
 constexpr int most_hugging_rings = 2;
 /// Seeds of hugging lines lie this far outside the band that they hug, in separation distances.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "detail/placed_lines.hpp"
 
+#include <optional>
+
 #include "detail/chord_sides.hpp"
 #include "detail/vec.hpp"
 
@@ -17,6 +19,20 @@ std::optional<Chord> chord_ahead(const Sheet& sheet, const Chord& chord) {
   const double coordinate = chord_coordinate(crossings, way_out.role, position);
   return make_chord(sheet, {way_out.triangle, coordinate}, exit_role(crossings, way_out.role, coordinate) == low_high);
 }
+
+/// How long a way is, point by point.
+class WayLength {
+ public:
+  void pass(const Vector& point) {
+    if (last_) length_ += (point - *last_).norm();
+    last_ = point;
+  }
+  double length() const { return length_; }
+
+ private:
+  std::optional<Vector> last_;
+  double length_ = 0;
+};
 
 }  // namespace
 
@@ -38,13 +54,9 @@ void reserve(std::size_t point_count, Placement& placement) {
 }
 
 double length_of(const Sheet& sheet, const PlacedLine& line) {
-  double length = 0;
-  Vector before = point_on(sheet, line.chords.front(), entry_side(sheet, line.chords.front()));
-  visit_points(sheet, line.chords, line.is_closed, [&](const Vector& point) {
-    length += (point - before).norm();
-    before = point;
-  });
-  return length;
+  WayLength way;
+  visit_points(sheet, line.chords, line.is_closed, [&](const Vector& point) { way.pass(point); });
+  return way.length();
 }
 
 void PlacedLines::add(const PlacedLine& line) {
@@ -65,8 +77,11 @@ void PlacedLines::write(const Sheet& sheet, Placement& placement) const {
 
 void PlacedLines::write(const Sheet& sheet, const PlacedLine& line, Placement& placement) const {
   const auto first = std::ssize(placement.points);
-  visit_points(sheet, line.chords, line.is_closed,
-               [&](const Vector& point) { placement.points.push_back(vec3(point)); });
+  WayLength way;
+  visit_points(sheet, line.chords, line.is_closed, [&](const Vector& point) {
+    placement.points.push_back(vec3(point));
+    way.pass(point);
+  });
   visit_weights(sheet, line.chords, line.is_closed,
                 [&](const Vec3& weights) { placement.barycentric.push_back(weights); });
   for (const auto& chord : line.chords) {
@@ -76,7 +91,7 @@ void PlacedLines::write(const Sheet& sheet, const PlacedLine& line, Placement& p
   }
   placement.point_triangles.push_back(placement.segment_triangles.back());
   placement.offsets.push_back(std::ssize(placement.points));
-  placement.lengths.push_back(length_of(sheet, line));
+  placement.lengths.push_back(way.length());
   placement.stop_reasons.push_back(line.stop_reasons);
   placement.seed_points.push_back((first + std::ssize(placement.points)) / 2);
 }
