@@ -89,7 +89,7 @@ TEST_CASE("long lines: what comes far ends where it has come back to itself") {
     const detail::ChordOccupancy occupancy(mesh, tracer, {});
     detail::ChordTracer chord_tracer(tracer, occupancy, {});
     detail::Chords chords;
-    const auto ends = chord_tracer.trace({0, 0.5}, false, chords);
+    const auto ends = chord_tracer.trace({0, 0.5}, {}, chords);
     CHECK((ends[0] == StopReason::near_itself && ends[1] == StopReason::near_itself));
 
     std::vector<Vector> points;

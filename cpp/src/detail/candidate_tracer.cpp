@@ -15,10 +15,10 @@ CandidateTracer::CandidateTracer(const StreamlineTracer& tracer, const ChordOccu
       chord_tracer_(tracer, occupancy, rules),
       candidates_(candidates) {}
 
-Trajectory CandidateTracer::add(const ChordPlace& start, bool mind_others, bool hugs) {
+Trajectory CandidateTracer::add(const ChordPlace& start, const ChordTracer::Obstacles& obstacles, bool hugs) {
   auto& chords = candidates_.chords();
   const auto first = std::ssize(chords);
-  const auto ends = chord_tracer_.trace(start, mind_others, chords);
+  const auto ends = chord_tracer_.trace(start, {obstacles.others, close_loops_ ? nullptr : obstacles.served}, chords);
   const Trajectory trajectory({first, std::ssize(chords)}, ends, hugs);
   candidates_.add(trajectory);
   if (close_loops_) add_closed(trajectory);

@@ -17,9 +17,9 @@ class CandidateTracer {
   double separation(std::int32_t triangle) const { return chord_tracer_.separation(triangle); }
   double separation() const { return chord_tracer_.separation(); }
 
-  /// Stores the trajectory through a chord, up to occupied ones if asked; and the closed curves that it winds onto, if
-  /// the rules ask for them.
-  Trajectory add(const ChordPlace& start, bool mind_others, bool hugs);
+  /// Stores the trajectory through a chord; and the closed curves that it winds onto, if the rules ask for them: then
+  /// none is left off.
+  Trajectory add(const ChordPlace& start, const ChordTracer::Obstacles& obstacles, bool hugs);
 
  private:
   void add_closed(const Trajectory& trajectory);

@@ -7,6 +7,7 @@
 #include "detail/self_approach.hpp"
 #include "detail/sheet.hpp"
 #include "detail/trajectories.hpp"
+#include "detail/triangle_rings.hpp"
 #include "detail/visited_chords.hpp"
 #include "pectinate/tracing.hpp"
 
@@ -33,12 +34,17 @@ class ChordTracer {
   /// 0 where it varies.
   double separation() const { return separation_; }
 
-  /// Appends the chords of the trajectory through one of them, from end to end, and tells why it stops there; at
-  /// occupied ones if asked.
-  std::array<StopReason, 2> trace(const ChordPlace& start, bool mind_others, Chords& chords);
+  /// What else ends a trajectory.
+  struct Obstacles {
+    bool others = false;                    ///< chords that other streamlines occupy
+    const TriangleMarks* served = nullptr;  ///< if given: to have come far through these, where it is left off
+  };
+
+  /// Appends the chords of the trajectory through one of them, from end to end, and tells why it ends there.
+  std::array<StopReason, 2> trace(const ChordPlace& start, const Obstacles& obstacles, Chords& chords);
 
  private:
-  StopReason walk(const Chord& start, Role exit, bool mind_others, Chords& chords);
+  StopReason walk(const Chord& start, Role exit, const Obstacles& obstacles, Chords& chords);
   bool comes_back(const Chord& chord, double arc);
   void prefetch(std::int32_t triangle, bool mind_others) const {
     __builtin_prefetch(crossings_.data() + triangle);

@@ -67,7 +67,7 @@ class LineFiller::Implementation {
         candidates_(crossings_.size(), rules.minimum_length,
                     {closed_bonus, occupancy.has_seed_sets() ? hugging_bonus_with_room : hugging_bonus}),
         candidate_tracer_(tracer, occupancy, rules, candidates_),
-        hugged_(crossings_.size(), 0) {}
+        served_(crossings_.size()) {}
 
   bool fill(const std::function<bool()>& go_on) {
     if (!fill_pool(go_on) || !empty_heap(go_on)) return false;
@@ -80,9 +80,9 @@ class LineFiller::Implementation {
     const auto always = [] { return true; };
     forget_candidates();
     for (const auto& start : freed.first) place_through(start);
-    ++round_;
+    served_.clear();
     for (const auto t : freed.triangles) {
-      if (hugged_[t] == round_ || occupancy_.unseeded().is_full(t)) continue;
+      if (served_.has(t) || occupancy_.unseeded().is_full(t)) continue;
       for (const auto& gap : occupancy_.unseeded().gaps(t)) {
         if (gap.high - gap.low >= least_gap) add_if_free({t, freed.start_in(gap)});
       }
@@ -99,30 +99,31 @@ class LineFiller::Implementation {
   /// Trajectories so close that the longest streamlines are never far from one: each triangle is crossed by one, or a
   /// few triangles away from one. False if it was stopped.
   bool fill_pool(const std::function<bool()>& go_on) {
-    TriangleMarks served(crossings_.size(), 0), has_been_crossed(served);
+    TriangleMarks has_been_crossed(crossings_.size());
+    served_.clear();
     std::vector<std::int32_t> seeds;  // the last one is the next
     const double sparse = sparse_separation * mean_edge_length_;
     const bool is_local = occupancy_.has_seed_sets();
     for (const auto first : sheet_.ranks) {  // in the mesh's order: the sheet's depends on the axes
-      if (served[first]) continue;
+      if (served_.has(first)) continue;
       for (seeds.push_back(first); !seeds.empty();) {
         const auto t = seeds.back();
         seeds.pop_back();
-        if (served[t] || occupancy_.stopped().is_full(t)) continue;
+        if (served_.has(t) || occupancy_.stopped().is_full(t)) continue;
         if (!go_on()) return false;
-        const auto stretch = candidate_tracer_.add({t, 0.5}, false, false).stretch();
+        const auto stretch = candidate_tracer_.add({t, 0.5}, {false, &served_}, false).stretch();
         std::vector<std::int32_t> crossed;
         for (const auto& chord : candidates_.chords_of(stretch)) {
-          if (!is_local && has_been_crossed[chord.triangle()]) continue;  // all around it is served
-          has_been_crossed[chord.triangle()] = 1;
+          if (!is_local && has_been_crossed.has(chord.triangle())) continue;  // all around it is served
+          has_been_crossed.add(chord.triangle());
           crossed.push_back(chord.triangle());
         }
         if (is_local) {
-          const auto beside = mark_rings(crossings_, std::move(crossed), 0, served);
+          const auto beside = mark_rings(crossings_, std::move(crossed), 0, served_);
           seeds.insert(seeds.end(), beside.begin(), beside.end());  // on from there: its memory is at hand
         } else {
           const int rings = separation(t) > sparse ? rings_of_dense_pool : usual_rings;
-          mark_rings(crossings_, std::move(crossed), rings, served);
+          mark_rings(crossings_, std::move(crossed), rings, served_);
         }
       }
     }
@@ -139,10 +140,10 @@ class LineFiller::Implementation {
 
   /// Candidates that lie just outside the band of the streamline placed last.
   void push_hugging(const std::vector<std::int32_t>& changed) {
-    ++round_;
+    served_.clear();
     const int rings = rings_beside_hugging();
     for (const auto t : changed) {
-      if (occupancy_.unseeded().is_full(t) || is_hugged_near(t, rings)) continue;
+      if (occupancy_.unseeded().is_full(t) || is_served_near(t, rings)) continue;
       make_room();  // what goes for want of it comes back when gaps are filled
       const double gap = hugging_gap * separation(t) / crossings_[t].width;
       occupancy_.unseeded().get_intervals(t, intervals_);
@@ -150,8 +151,7 @@ class LineFiller::Implementation {
         for (const double coordinate : {low - gap, high + gap}) {
           if (!(coordinate > least_position && coordinate < 1 - least_position)) continue;
           if (occupancy_.unseeded().contains(t, coordinate)) continue;
-          const auto stretch = candidate_tracer_.add({t, coordinate}, true, true).stretch();
-          for (auto i = stretch.first; i < stretch.last; ++i) hugged_[chords_[i].triangle()] = round_;
+          serve(candidate_tracer_.add({t, coordinate}, {true, &served_}, true));
         }
       }
     }
@@ -164,19 +164,23 @@ class LineFiller::Implementation {
     return static_cast<int>(std::clamp(across, 0.0, static_cast<double>(std::min(wanted, most_hugging_rings))));
   }
 
-  /// Does a candidate cross the triangle that hugs the streamline placed last, or another so many rings around it?
-  bool is_hugged_near(std::int32_t triangle, int rings) const {
-    if (hugged_[triangle] == round_) return true;
+  /// The triangles that a candidate crosses need no other.
+  void serve(const Trajectory& candidate) {
+    for (const auto& chord : candidates_.chords_of(candidate.stretch())) served_.add(chord.triangle());
+  }
+
+  /// Is the triangle served, or another so many rings around it?
+  bool is_served_near(std::int32_t triangle, int rings) const {
+    if (served_.has(triangle)) return true;
     return rings > 0 && std::ranges::any_of(crossings_[triangle].neighbours, [&](std::int32_t beside) {
-             return beside >= 0 && is_hugged_near(beside, rings - 1);
+             return beside >= 0 && is_served_near(beside, rings - 1);
            });
   }
 
   /// A candidate from there, if that is free.
   void add_if_free(const ChordPlace& start) {
     if (occupancy_.stopped().contains(start.triangle, start.coordinate)) return;
-    const auto stretch = candidate_tracer_.add(start, true, false).stretch();
-    for (auto i = stretch.first; i < stretch.last; ++i) hugged_[chords_[i].triangle()] = round_;
+    serve(candidate_tracer_.add(start, {true}, false));
   }
 
   /// Places the longest line through there, or of what is left of it, that may be placed; no other candidates stay.
@@ -226,7 +230,7 @@ class LineFiller::Implementation {
         const double middle = (gap.low + gap.high) / 2;
         if (occupancy_.unseeded().contains(t, middle)) continue;
         const auto before = candidates_.piece_count();
-        candidate_tracer_.add({t, middle}, true, false);
+        candidate_tracer_.add({t, middle}, {true}, false);
         if (candidates_.piece_count() == before) occupancy_.retire_seed(t, gap);
       }
     }
@@ -251,12 +255,20 @@ class LineFiller::Implementation {
       place_closed(piece);
     } else if (const auto best = longest_free(piece)) {
       const auto& [stretch, length] = *best;
-      if (candidates_.is_first(piece, length)) {
-        place_best(stretch, piece);
-      } else {
+      if (!candidates_.is_first(piece, length)) {
         candidates_.push_back(piece, stretch, length);
+      } else if (candidates_.trajectory(piece.trajectory()).is_left_off_at(stretch)) {
+        trace_to_ends(stretch, piece.trajectory());
+      } else {
+        place_best(stretch, piece);
       }
     }
+  }
+
+  /// Replaces a stretch at whose end a trajectory was left off.
+  void trace_to_ends(const Stretch& stretch, std::int32_t trajectory) {
+    const auto& chord = chords_[(stretch.first + stretch.last) / 2];
+    candidate_tracer_.add({chord.triangle(), chord.coordinate}, {true}, candidates_.trajectory(trajectory).hugs);
   }
 
   /// Cuts off from all pieces what is not free any more.
@@ -399,10 +411,9 @@ class LineFiller::Implementation {
   std::int64_t placed_count_ = 0;
 
   SelfFreeParts self_free_parts_;
-  Polyline polyline_;                  // of the stretch at hand
-  std::vector<Interval> intervals_;    // of the triangle at hand
-  std::vector<std::uint32_t> hugged_;  // per triangle: the last streamline beside which a candidate crosses it
-  std::uint32_t round_ = 0;
+  Polyline polyline_;                // of the stretch at hand
+  std::vector<Interval> intervals_;  // of the triangle at hand
+  TriangleMarks served_;             // need no other candidate: of the pool, then beside the streamline placed last
 };
 
 LineFiller::LineFiller(const SurfaceMesh& mesh, const StreamlineTracer& tracer, const LineRules& rules,

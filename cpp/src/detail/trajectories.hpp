@@ -38,7 +38,10 @@ struct Stretch {
   bool operator==(const Stretch&) const = default;
 };
 
-/// A curve of the field, from stop to stop. There may be more than triangles: it is small.
+/// In place of why a trajectory ends: it would go on, but was left off.
+inline constexpr auto left_off = static_cast<StopReason>(stop_reason_count);
+
+/// A curve of the field, from stop to stop, or to where it was left off. There may be more than triangles: it is small.
 struct Trajectory {
   std::int64_t first;
   std::int32_t length;  // in chords
@@ -53,6 +56,10 @@ struct Trajectory {
 
   Stretch stretch() const { return {first, first + length}; }
   bool is_closed() const { return ends[0] == StopReason::closed; }
+  /// Is an end of a stretch of it one where it was left off?
+  bool is_left_off_at(const Stretch& part) const {
+    return (part.first == first && ends[0] == left_off) || (part.last == first + length && ends[1] == left_off);
+  }
 };
 
 /// A stretch of a trajectory under the length that it had when it was last looked at; it only ever gets shorter.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -9,20 +10,32 @@
 
 namespace pectinate::detail {
 
-using TriangleMarks = std::vector<std::uint8_t>;  // not of bool: its bits take longer to get at
+/// Marks on triangles, all of which can be forgotten at once.
+class TriangleMarks {
+ public:
+  explicit TriangleMarks(std::size_t triangle_count) : rounds_(triangle_count, 0) {}
+
+  bool has(std::int32_t triangle) const { return rounds_[triangle] == round_; }
+  void add(std::int32_t triangle) { rounds_[triangle] = round_; }
+  void clear() { ++round_; }
+
+ private:
+  std::vector<std::uint32_t> rounds_;  // per triangle: when it was marked last
+  std::uint32_t round_ = 1;
+};
 
 /// Marks triangles and those up to `rings` triangles away; the search does not go on beyond marked ones. Returns the
 /// ring of unmarked ones around them, some of it twice.
 inline std::vector<std::int32_t> mark_rings(const LargeArray<TriangleCrossings>& crossings,
-                                            std::vector<std::int32_t> front, int rings, TriangleMarks& is_marked) {
+                                            std::vector<std::int32_t> front, int rings, TriangleMarks& marks) {
   std::vector<std::int32_t> next;
-  for (const auto t : front) is_marked[t] = 1;
+  for (const auto t : front) marks.add(t);
   for (int ring = 0; ring <= rings; ++ring, front.swap(next)) {
     next.clear();
     for (const auto t : front) {
       for (const auto other : crossings[t].neighbours) {
-        if (other < 0 || is_marked[other]) continue;
-        if (ring < rings) is_marked[other] = 1;
+        if (other < 0 || marks.has(other)) continue;
+        if (ring < rings) marks.add(other);
         next.push_back(other);
       }
     }
