@@ -290,6 +290,7 @@ class LineFiller::Implementation {
   /// The longest free stretch of a piece; the others go back to the heap.
   std::optional<FreeStretch> longest_free(const Piece& piece) {
     std::optional<FreeStretch> best;
+    prefetch(piece.stretch());
     for (auto i = piece.first; i < piece.stretch().last;) {
       if (is_stopped(chords_[i])) {
         ++i;
@@ -317,6 +318,12 @@ class LineFiller::Implementation {
   /// Does it keep d_sep, and needs no more room to start?
   bool is_long(double length, const Stretch& stretch) const {
     return occupancy_.clearance().stop >= 1 && length >= long_length * separation(chords_[stretch.first].triangle());
+  }
+  /// What is asked of chords is elsewhere in memory. Were it a call, the compiler would leave it out as without effect.
+  [[gnu::always_inline]] void prefetch(const Stretch& stretch) const {
+    constexpr std::int64_t most = 64;
+    const auto last = std::min(stretch.last, stretch.first + most);
+    for (auto i = stretch.first; i < last; ++i) occupancy_.stopped().prefetch(chords_[i].triangle());
   }
   bool is_stopped(const Chord& chord) const {
     return occupancy_.stopped().contains(chord.triangle(), chord.coordinate);
