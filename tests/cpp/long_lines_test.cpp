@@ -2,7 +2,10 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numbers>
+#include <tuple>
 #include <vector>
 
 #include "detail/chord_sides.hpp"
@@ -108,6 +111,62 @@ TEST_CASE("long lines: what comes far ends where it has come back to itself") {
     // Lines d_sep apart would be as long as area / d_sep.
     CHECK(arc.back() < 2 * mesh.area() / separation);
     CHECK(arc.back() > 64 * separation);
+  }
+}
+
+TEST_CASE("long lines: a trajectory is left off where it has come far through served triangles, and only there") {
+  const auto mesh = grid(1000, 4).mesh();
+  const auto field = constant_field(mesh, Vector(1, 0.0003, 0));
+  const StreamlineTracer tracer(mesh, field, {0.5});
+  const auto& sheet = tracer.sheet();
+  const detail::ChordOccupancy occupancy(mesh, tracer, {});
+  detail::ChordTracer chord_tracer(tracer, occupancy, {});
+  const auto column_of = [&](std::int32_t t) { return sheet.low(t).x(); };
+  const auto middle = *std::ranges::min_element(sheet.ranks, {}, [&](std::int32_t t) {
+    return (sheet.low(t) - Vector(500, 2, 0)).norm();
+  });
+  const auto trace_served = [&](const auto& is_served) {
+    detail::TriangleMarks served(mesh.triangle_count());
+    for (std::int32_t t = 0; t < sheet.triangle_count(); ++t) {
+      if (is_served(column_of(t))) served.add(t);
+    }
+    detail::Chords chords;
+    const auto ends = chord_tracer.trace({middle, 0.5}, {false, &served}, chords);
+    const auto columns = std::minmax({column_of(chords.front().triangle()), column_of(chords.back().triangle())});
+    return std::tuple(ends, static_cast<int>(columns.first), static_cast<int>(columns.second));
+  };
+  constexpr auto border = StopReason::boundary;
+  using Ends = std::array<StopReason, 2>;
+  // Two chords a column.
+  const auto [none, none_low, none_high] = trace_served([](double) { return false; });
+  CHECK(none == Ends{border, border});
+  CHECK((none_low <= 1 && none_high >= 998));
+  const auto [all, all_low, all_high] = trace_served([](double) { return true; });
+  CHECK(all == Ends{detail::left_off, detail::left_off});
+  CHECK((all_low <= 500 - 128 && all_low >= 500 - 128 - 12 && all_high >= 500 + 128 && all_high <= 500 + 128 + 12));
+  const auto [short_runs, short_low, short_high] =
+      trace_served([](double x) { return static_cast<int>(x) % 125 < 120; });
+  CHECK(short_runs == Ends{border, border});
+  const auto [one, one_low, one_high] = trace_served([](double x) { return x > 600; });
+  CHECK((std::ranges::count(one, border) == 1 && std::ranges::count(one, detail::left_off) == 1));
+  CHECK((one_low <= 1 && one_high >= 600 + 128 && one_high <= 600 + 128 + 12));
+}
+
+TEST_CASE("long lines: what was left off runs on to its natural ends when it is placed") {
+  const auto mesh = jittered_grid(900, 14).mesh();
+  for (const double slope : {0.0, 0.004, 0.02}) {
+    const auto field = field_of(mesh, [&](const Vector& c, const Vector&) -> Vector {
+      return Vector(1, slope * std::sin(c.x() / 90), 0);
+    });
+    for (const double separation : {0.5, 0.9}) {
+      const auto placement = checked(mesh, field, with(separation));
+      // Nothing ends but at the border or beside another.
+      for (const auto& ends : placement.stop_reasons) {
+        for (const auto reason : ends) CHECK((reason == StopReason::boundary || reason == StopReason::near_other));
+      }
+      check_segment_separation(placement, separation);
+      check_complete(mesh, field, placement, 10);
+    }
   }
 }
 
