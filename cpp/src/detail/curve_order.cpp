@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "detail/large_array.hpp"
 #include "detail/vec.hpp"
 
 namespace pectinate::detail {
@@ -32,8 +33,7 @@ std::vector<std::uint32_t> curve_keys(std::span<const Vec3> points) {
     const double x = offset * scale;
     return spread(x < cells_per_axis ? static_cast<std::uint32_t>(x) : cells_per_axis - 1);
   };
-  std::vector<std::uint32_t> keys;
-  keys.reserve(points.size());
+  auto keys = roomy_vector<std::uint32_t>(points.size());
   for (const auto& point : points) {
     keys.push_back(cell(point[0] - low.x()) | cell(point[1] - low.y()) << 1 | cell(point[2] - low.z()) << 2);
   }
@@ -43,7 +43,7 @@ std::vector<std::uint32_t> curve_keys(std::span<const Vec3> points) {
 /// Where each item comes when all are sorted by a key below `key_count`; equals keep their order.
 template <class Key>
 std::vector<std::int32_t> ranks_by(std::size_t count, std::size_t key_count, const Key& key) {
-  std::vector<std::int32_t> starts(key_count + 1, 0), ranks(count);
+  auto starts = roomy_vector<std::int32_t>(key_count + 1, 0), ranks = roomy_vector<std::int32_t>(count, 0);
   for (std::size_t i = 0; i < count; ++i) ++starts[key(i) + 1];
   std::partial_sum(starts.begin(), starts.end(), starts.begin());
   for (std::size_t i = 0; i < count; ++i) ranks[i] = starts[key(i)]++;
@@ -56,10 +56,10 @@ std::vector<std::int32_t> curve_ranks(std::span<const Vec3> points) {
   constexpr std::uint32_t digits = 1U << bits_per_pass;
   const auto keys = curve_keys(points);
   const auto by_low_digit = ranks_by(points.size(), digits, [&](std::size_t i) { return keys[i] % digits; });
-  std::vector<std::int32_t> order(points.size());
+  auto order = roomy_vector<std::int32_t>(points.size(), 0);
   for (std::size_t i = 0; i < points.size(); ++i) order[by_low_digit[i]] = static_cast<std::int32_t>(i);
   const auto by_both = ranks_by(points.size(), digits, [&](std::size_t i) { return keys[order[i]] / digits; });
-  std::vector<std::int32_t> ranks(points.size());
+  auto ranks = roomy_vector<std::int32_t>(points.size(), 0);
   for (std::size_t i = 0; i < points.size(); ++i) ranks[order[i]] = by_both[i];
   return ranks;
 }

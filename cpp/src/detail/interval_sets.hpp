@@ -78,7 +78,7 @@ class IntervalSets {
   void release_all(std::int32_t node);
 
   LargeArray<Item> items_;
-  std::vector<Node> nodes_;
+  LargeArray<Node> nodes_;
   std::int32_t released_ = empty;  // list of nodes for reuse
 };
 

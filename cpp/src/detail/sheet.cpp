@@ -62,7 +62,7 @@ class SheetMaker {
     }
     const auto count = static_cast<std::int32_t>(mesh_.triangle_count());
     sheet_.ranks = ranks_by_corner(mesh_.triangles(), vertex_ranks_);
-    sheet_.mesh_triangles.resize(count);
+    sheet_.mesh_triangles = roomy_vector<std::int32_t>(count, 0);
     sheet_.corners.resize(count);
     sheet_.crossings.resize(count);
     for (std::int32_t t = 0; t < count; t += measured_lanes) measure(t, std::min(count - t, measured_lanes));

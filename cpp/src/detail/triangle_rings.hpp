@@ -20,7 +20,7 @@ class TriangleMarks {
   void clear() { ++round_; }
 
  private:
-  std::vector<std::uint32_t> rounds_;  // per triangle: when it was marked last
+  LargeArray<std::uint32_t> rounds_;  // per triangle: when it was marked last
   std::uint32_t round_ = 1;
 };
 
