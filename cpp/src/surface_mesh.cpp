@@ -27,10 +27,12 @@ std::vector<SurfaceComponent> measure_components(const std::vector<std::int32_t>
                                                  const std::vector<bool>& orientable,
                                                  const std::vector<double>& areas) {
   std::vector<SurfaceComponent> components(orientable.size());
-  for (std::size_t t = 0; t < areas.size(); ++t) {
-    auto& component = components[triangle_components[t]];
-    component.triangle_count += 1;
-    component.area += areas[t];
+  for (std::size_t first = 0, last = 0; first < areas.size(); first = last) {
+    auto& component = components[triangle_components[first]];
+    double sum = 0;  // of a run of triangles
+    for (; last < areas.size() && triangle_components[last] == triangle_components[first]; ++last) sum += areas[last];
+    component.triangle_count += last - first;
+    component.area += sum;
   }
   for (std::size_t c = 0; c < components.size(); ++c) components[c].orientable = orientable[c];
   return components;
@@ -100,7 +102,7 @@ SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangl
   triangle_edges_ = std::move(topology.triangle_edges);
   edge_sides_ = std::move(topology.edge_sides);
   neighbours_ = std::move(topology.neighbours);
-  for (const double area : areas_) area_ += area;
+  for (const auto& component : components_) area_ += component.area;
 }
 
 void SurfaceMesh::orient(detail::Topology& topology) {

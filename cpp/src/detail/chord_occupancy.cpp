@@ -48,7 +48,7 @@ ChordOccupancy::ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& 
       singular_(has_singular_ ? mesh.triangle_count() : 0),
       origin_(vector(mesh.vertices()[0])),
       slack_(size_slack * static_cast<float>(mesh.bounding_box_diagonal())),
-      tiles_(mesh.triangle_count()),
+      tiles_(large_array<Tile>(mesh.triangle_count())),
       stop_marks_(sheet_, CapsuleMarks::Kind::shadows,
                   [this](auto triangle, const auto& chords) { take(triangle, chords); }),
       seed_marks_(sheet_, CapsuleMarks::Kind::cores,
@@ -69,7 +69,7 @@ ChordOccupancy::ChordOccupancy(const SurfaceMesh& mesh, const StreamlineTracer& 
 
 void ChordOccupancy::make_tiles() {
   using Point = Eigen::Array4f;
-  LargeArray<Point> points(sheet_.vertices.size());
+  auto points = large_array<Point>(sheet_.vertices.size());
   for (std::size_t v = 0; v < points.size(); ++v) {
     points[v] << (sheet_.vertices[v] - origin_).cast<float>().array(), 0.F;
   }

@@ -17,7 +17,7 @@ namespace pectinate::detail {
 /// intervals take half the memory.
 class IntervalSets {
  public:
-  explicit IntervalSets(std::size_t count) : items_(count) {
+  explicit IntervalSets(std::size_t count) : items_(large_array<Item>(count)) {
     nodes_.reserve(most_reserved * count);  // memory that is not written to costs nothing
   }
 

@@ -11,12 +11,17 @@ namespace pectinate::detail {
 /// Asks the system to back what whole large pages lie in this memory by such; a hint.
 void prefer_large_pages(void* memory, std::size_t size);
 
+/// Asks the system to back memory that will all be written with pages at once; a hint. To do it page by page, as each is
+/// written first, takes longer.
+void back_with_pages(void* memory, std::size_t size);
+
 /// An empty vector with room for so many elements, in large pages where it fills such.
 template <class T>
 std::vector<T> roomy_vector(std::size_t count) {
   std::vector<T> result;
   result.reserve(count);
   prefer_large_pages(result.data(), count * sizeof(T));
+  back_with_pages(result.data(), count * sizeof(T));
   return result;
 }
 
@@ -70,6 +75,16 @@ class LargePageAllocator {
 /// Elements of built-in types have no value until they are given one.
 template <class T>
 using LargeArray = std::vector<T, LargePageAllocator<T>>;
+
+/// So many elements without a value.
+template <class T>
+LargeArray<T> large_array(std::size_t count) {
+  LargeArray<T> result;
+  result.reserve(count);
+  back_with_pages(result.data(), count * sizeof(T));
+  result.resize(count);
+  return result;
+}
 
 /// How many elements, not less than so many, fill large pages to the last; of less than a large page, as many.
 template <class T>

@@ -85,13 +85,20 @@ std::vector<bool> points_inwards(const std::vector<Vec3>& vertices, const std::v
                                  const std::vector<SurfaceComponent>& components,
                                  const std::vector<BoundaryLoop>& loops) {
   std::vector<double> volume(components.size(), 0);  // six times
-  std::vector<Vector> origin(components.size(), Vector::Zero());
-  for (std::size_t t = triangles.size(); t-- > 0;) origin[triangle_components[t]] = vector(vertices[triangles[t][0]]);
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto& [a, b, c] = triangles[t];
-    const Vector ab = vector(vertices[b]) - vector(vertices[a]), ac = vector(vertices[c]) - vector(vertices[a]);
-    const auto component = triangle_components[t];
-    volume[component] += (vector(vertices[a]) - origin[component]).dot(ab.cross(ac));
+  std::vector<Vector> origin;                        // a vertex of each; they are numbered as they begin
+  for (std::size_t t = 0; origin.size() < components.size(); ++t) {
+    if (triangle_components[t] == std::ssize(origin)) origin.push_back(vector(vertices[triangles[t][0]]));
+  }
+  for (std::size_t first = 0, last = 0; first < triangles.size(); first = last) {
+    const auto component = triangle_components[first];
+    const Vector from = origin[component];
+    double sum = 0;  // of a run of triangles
+    for (; last < triangles.size() && triangle_components[last] == component; ++last) {
+      const auto& [a, b, c] = triangles[last];
+      const Vector ab = vector(vertices[b]) - vector(vertices[a]), ac = vector(vertices[c]) - vector(vertices[a]);
+      sum += (vector(vertices[a]) - from).dot(ab.cross(ac));
+    }
+    volume[component] += sum;
   }
   for (const auto& loop : loops) {
     const Vector& from = origin[loop.component];

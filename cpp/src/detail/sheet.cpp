@@ -53,18 +53,18 @@ class SheetMaker {
         // pi disables the criterion, whatever the rounding.
         least_turn_cosine_(abrupt_turn_angle < std::numbers::pi ? std::cos(abrupt_turn_angle) : -2),
         vertex_ranks_(curve_ranks(mesh.vertices())),
-        cosines_(mesh.triangle_count()) {}
+        cosines_(large_array<SideCosines>(mesh.triangle_count())) {}
 
   Sheet make() && {
-    sheet_.vertices.resize(mesh_.vertices().size());
+    sheet_.vertices = large_array<Vector>(mesh_.vertices().size());
     for (std::size_t v = 0; v < vertex_ranks_.size(); ++v) {
       sheet_.vertices[vertex_ranks_[v]] = vector(mesh_.vertices()[v]);
     }
     const auto count = static_cast<std::int32_t>(mesh_.triangle_count());
     sheet_.ranks = ranks_by_corner(mesh_.triangles(), vertex_ranks_);
     sheet_.mesh_triangles = roomy_vector<std::int32_t>(count, 0);
-    sheet_.corners.resize(count);
-    sheet_.crossings.resize(count);
+    sheet_.corners = large_array<std::array<std::int32_t, 3>>(count);
+    sheet_.crossings = large_array<TriangleCrossings>(count);
     for (std::int32_t t = 0; t < count; t += measured_lanes) measure(t, std::min(count - t, measured_lanes));
     set_exits();
     return std::move(sheet_);
