@@ -122,9 +122,8 @@ TEST_CASE("long lines: a trajectory is left off where it has come far through se
   const detail::ChordOccupancy occupancy(mesh, tracer, {});
   detail::ChordTracer chord_tracer(tracer, occupancy, {});
   const auto column_of = [&](std::int32_t t) { return sheet.low(t).x(); };
-  const auto middle = *std::ranges::min_element(sheet.ranks, {}, [&](std::int32_t t) {
-    return (sheet.low(t) - Vector(500, 2, 0)).norm();
-  });
+  const auto middle = *std::ranges::min_element(
+      sheet.ranks, {}, [&](std::int32_t t) { return (sheet.low(t) - Vector(500, 2, 0)).norm(); });
   const auto trace_served = [&](const auto& is_served) {
     detail::TriangleMarks served(mesh.triangle_count());
     for (std::int32_t t = 0; t < sheet.triangle_count(); ++t) {
@@ -155,9 +154,8 @@ TEST_CASE("long lines: a trajectory is left off where it has come far through se
 TEST_CASE("long lines: what was left off runs on to its natural ends when it is placed") {
   const auto mesh = jittered_grid(900, 14).mesh();
   for (const double slope : {0.0, 0.004, 0.02}) {
-    const auto field = field_of(mesh, [&](const Vector& c, const Vector&) -> Vector {
-      return Vector(1, slope * std::sin(c.x() / 90), 0);
-    });
+    const auto field = field_of(
+        mesh, [&](const Vector& c, const Vector&) -> Vector { return Vector(1, slope * std::sin(c.x() / 90), 0); });
     for (const double separation : {0.5, 0.9}) {
       const auto placement = checked(mesh, field, with(separation));
       // Nothing ends but at the border or beside another.

@@ -11,8 +11,8 @@ namespace pectinate::detail {
 /// Asks the system to back what whole large pages lie in this memory by such; a hint.
 void prefer_large_pages(void* memory, std::size_t size);
 
-/// Asks the system to back memory that will all be written with pages at once; a hint. To do it page by page, as each is
-/// written first, takes longer.
+/// Asks the system to back memory that will all be written with pages at once; a hint. To do it page by page, as each
+/// is written first, takes longer.
 void back_with_pages(void* memory, std::size_t size);
 
 /// An empty vector with room for so many elements, in large pages where it fills such.

@@ -112,22 +112,31 @@ class LineFiller::Implementation {
         if (served_.has(t) || occupancy_.stopped().is_full(t)) continue;
         if (!go_on()) return false;
         const auto stretch = candidate_tracer_.add({t, 0.5}, {false, &served_}, false).stretch();
-        std::vector<std::int32_t> crossed;
-        for (const auto& chord : candidates_.chords_of(stretch)) {
-          if (!is_local && has_been_crossed.has(chord.triangle())) continue;  // all around it is served
-          has_been_crossed.add(chord.triangle());
-          crossed.push_back(chord.triangle());
-        }
         if (is_local) {
-          const auto beside = mark_rings(crossings_, std::move(crossed), 0, served_);
-          seeds.insert(seeds.end(), beside.begin(), beside.end());  // on from there: its memory is at hand
+          serve(stretch);
+          push_beside(stretch, seeds);  // on from there: its memory is at hand
         } else {
-          const int rings = separation(t) > sparse ? rings_of_dense_pool : usual_rings;
-          mark_rings(crossings_, std::move(crossed), rings, served_);
+          std::vector<std::int32_t> crossed;
+          for (const auto& chord : candidates_.chords_of(stretch)) {
+            if (has_been_crossed.has(chord.triangle())) continue;  // all around it is served
+            has_been_crossed.add(chord.triangle());
+            crossed.push_back(chord.triangle());
+          }
+          mark_rings(crossings_, std::move(crossed), separation(t) > sparse ? rings_of_dense_pool : usual_rings,
+                     served_);
         }
       }
     }
     return true;
+  }
+
+  /// Those beside a trajectory that are not served.
+  void push_beside(const Stretch& stretch, std::vector<std::int32_t>& triangles) const {
+    for (const auto& chord : candidates_.chords_of(stretch)) {
+      for (const auto other : crossings_[chord.triangle()].neighbours) {
+        if (other >= 0 && !served_.has(other)) triangles.push_back(other);
+      }
+    }
   }
 
   /// Drops what is of no use any more, where it takes much room.
@@ -151,7 +160,7 @@ class LineFiller::Implementation {
         for (const double coordinate : {low - gap, high + gap}) {
           if (!(coordinate > least_position && coordinate < 1 - least_position)) continue;
           if (occupancy_.unseeded().contains(t, coordinate)) continue;
-          serve(candidate_tracer_.add({t, coordinate}, {true, &served_}, true));
+          serve(candidate_tracer_.add({t, coordinate}, {true, &served_}, true).stretch());
         }
       }
     }
@@ -165,8 +174,8 @@ class LineFiller::Implementation {
   }
 
   /// The triangles that a candidate crosses need no other.
-  void serve(const Trajectory& candidate) {
-    for (const auto& chord : candidates_.chords_of(candidate.stretch())) served_.add(chord.triangle());
+  void serve(const Stretch& candidate) {
+    for (const auto& chord : candidates_.chords_of(candidate)) served_.add(chord.triangle());
   }
 
   /// Is the triangle served, or another so many rings around it?
@@ -180,7 +189,7 @@ class LineFiller::Implementation {
   /// A candidate from there, if that is free.
   void add_if_free(const ChordPlace& start) {
     if (occupancy_.stopped().contains(start.triangle, start.coordinate)) return;
-    serve(candidate_tracer_.add(start, {true}, false));
+    serve(candidate_tracer_.add(start, {true}, false).stretch());
   }
 
   /// Places the longest line through there, or of what is left of it, that may be placed; no other candidates stay.

@@ -24,23 +24,21 @@ class TriangleMarks {
   std::uint32_t round_ = 1;
 };
 
-/// Marks triangles and those up to `rings` triangles away; the search does not go on beyond marked ones. Returns the
-/// ring of unmarked ones around them, some of it twice.
-inline std::vector<std::int32_t> mark_rings(const LargeArray<TriangleCrossings>& crossings,
-                                            std::vector<std::int32_t> front, int rings, TriangleMarks& marks) {
-  std::vector<std::int32_t> next;
+/// Marks triangles and those up to `rings` triangles away; the search does not go on beyond marked ones.
+inline void mark_rings(const LargeArray<TriangleCrossings>& crossings, std::vector<std::int32_t> front, int rings,
+                       TriangleMarks& marks) {
   for (const auto t : front) marks.add(t);
-  for (int ring = 0; ring <= rings; ++ring, front.swap(next)) {
+  std::vector<std::int32_t> next;
+  for (int ring = 0; ring < rings; ++ring, front.swap(next)) {
     next.clear();
     for (const auto t : front) {
       for (const auto other : crossings[t].neighbours) {
         if (other < 0 || marks.has(other)) continue;
-        if (ring < rings) marks.add(other);
+        marks.add(other);
         next.push_back(other);
       }
     }
   }
-  return front;
 }
 
 }  // namespace pectinate::detail
