@@ -8,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include "detail/candidates.hpp"
 #include "detail/chord_sides.hpp"
 #include "detail/chord_tracer.hpp"
 #include "placement_checks.hpp"
@@ -153,18 +154,38 @@ TEST_CASE("long lines: a trajectory is left off where it has come far through se
 
 TEST_CASE("long lines: what was left off runs on to its natural ends when it is placed") {
   const auto mesh = jittered_grid(900, 14).mesh();
+  auto roomy = with(0.7), polished = with(0.8);
+  roomy.seed_clearance = 1.3;
+  polished.polishing_rounds = 5;
   for (const double slope : {0.0, 0.004, 0.02}) {
     const auto field = field_of(
         mesh, [&](const Vector& c, const Vector&) -> Vector { return Vector(1, slope * std::sin(c.x() / 90), 0); });
-    for (const double separation : {0.5, 0.9}) {
-      const auto placement = checked(mesh, field, with(separation));
+    for (auto options : {with(0.5), with(0.9), roomy, polished}) {
+      const double separation = options.separation_distance;
+      const auto placement = checked(mesh, field, options);
       // Nothing ends but at the border or beside another.
       for (const auto& ends : placement.stop_reasons) {
         for (const auto reason : ends) CHECK((reason == StopReason::boundary || reason == StopReason::near_other));
       }
       check_segment_separation(placement, separation);
-      check_complete(mesh, field, placement, 10);
+      if (options.seed_clearance == 1) check_complete(mesh, field, placement, 10);
     }
+  }
+}
+
+TEST_CASE("long lines: what was left off may be longer than it is, also than the minimum length") {
+  for (const auto end : {StopReason::boundary, detail::left_off}) {
+    detail::Candidates candidates(100, 3, {1, 1});
+    auto& chords = candidates.chords();
+    chords.assign(4, {0.5, 0.5F, 0});  // of length 2
+    candidates.add({{0, 4}, {StopReason::boundary, end}, false});
+    const bool is_left_off = end == detail::left_off;
+    REQUIRE(candidates.piece_count() == (is_left_off ? 1 : 0));
+    if (is_left_off) candidates.pop();
+    CHECK(candidates.is_first({1, 4}, 1.5, 0) == is_left_off);
+    CHECK(!candidates.is_first({0, 3}, 1.5, 0));  // without that end
+    candidates.push({0, 3}, 1.5, 0);
+    CHECK(candidates.piece_count() == 0);
   }
 }
 

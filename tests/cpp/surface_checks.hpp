@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <set>
 #include <vector>
 
@@ -182,19 +183,26 @@ inline void check_loops(const SurfaceMesh& mesh) {
 }
 
 inline void check_components(const SurfaceMesh& mesh) {
-  std::size_t triangles = 0;
-  double area = 0;
+  const auto count = mesh.components().size();
+  std::vector<std::size_t> triangle_counts(count, 0);
+  std::vector<double> areas(count, 0);
+  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
+    const auto component = mesh.triangle_components()[t];
+    triangle_counts[component] += 1;
+    areas[component] += mesh.triangle_areas()[t];
+  }
   int loops = 0;
-  for (const auto& component : mesh.components()) {
-    triangles += component.triangle_count;
-    area += component.area;
+  for (std::size_t c = 0; c < count; ++c) {
+    const auto& component = mesh.components()[c];
+    CHECK(component.triangle_count == triangle_counts[c]);
+    CHECK(component.area == doctest::Approx(areas[c]).epsilon(1e-12));
     loops += component.boundary_loop_count;
     CHECK(component.genus >= (component.orientable ? 0 : 1));
     const int handles = component.orientable ? 2 * component.genus : component.genus;
     CHECK(component.euler_characteristic == 2 - handles - component.boundary_loop_count);
   }
-  CHECK(triangles == mesh.triangle_count());
-  CHECK(area == doctest::Approx(mesh.area()).epsilon(1e-12));
+  const double area = std::accumulate(mesh.triangle_areas().begin(), mesh.triangle_areas().end(), 0.0);
+  CHECK(mesh.area() == doctest::Approx(area).epsilon(1e-12));
   CHECK(loops == static_cast<int>(mesh.boundary_loops().size()));
 }
 

@@ -93,6 +93,26 @@ TEST_CASE("mesh: closed and open surfaces alike face outwards") {
   }
 }
 
+TEST_CASE("mesh: of components whose triangles lie mixed each faces outwards") {
+  const std::vector<Soup> parts = {sphere(2), moved(torus(9, 5), {20, 0, 0}), moved(cylinder(12, 3, 1, 2), {40, 0, 0}),
+                                   moved(tetrahedron(), {60, 0, 0})};
+  Soup all;
+  double volume = 0, area = 0;
+  for (auto part : parts) {
+    const auto mesh = part.mesh();
+    volume += signed_volume(mesh);
+    area += mesh.area();
+    for (auto& triangle : part.triangles) std::swap(triangle[1], triangle[2]);
+    all = together(all, part);
+  }
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const auto mesh = checked(tumbled(all, seed));
+    REQUIRE(mesh.components().size() == parts.size());
+    CHECK(signed_volume(mesh) == doctest::Approx(volume).epsilon(1e-12));
+    CHECK(mesh.area() == doctest::Approx(area).epsilon(1e-12));
+  }
+}
+
 TEST_CASE("mesh: a flat surface follows the majority of its windings") {
   auto soup = grid(6, 5);
   Random random(7);

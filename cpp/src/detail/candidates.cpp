@@ -52,7 +52,7 @@ void Candidates::push_back(const Piece& piece, const Stretch& stretch, double le
 }
 
 void Candidates::insert(const Piece& piece, double length) {
-  if (piece.length <= 0 || length < minimum_length_) return;
+  if (piece.length <= 0 || !is_long_enough(piece.stretch(), length, piece.trajectory())) return;
   heap_.push_back(piece);
   std::push_heap(heap_.begin(), heap_.end());
 }
@@ -71,10 +71,6 @@ void Candidates::prefetch_next() const {
   constexpr std::int64_t at_first = 32, chords_per_line = 64 / sizeof(Chord);
   const auto [first, last] = heap_.front().stretch();
   for (auto i = first; i < std::min(last, first + at_first); i += chords_per_line) __builtin_prefetch(&chords_[i]);
-}
-
-bool Candidates::comes_first(double length, double key) const {
-  return length >= minimum_length_ && (heap_.empty() || key >= heap_.front().key);
 }
 
 void Candidates::clear() {

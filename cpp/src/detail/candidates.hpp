@@ -40,9 +40,13 @@ class Candidates {
   void push_back(const Piece& piece, const Stretch& stretch, double length);
   /// Takes the longest piece out; there must be one.
   Piece pop();
-  /// Would a stretch of this length come first? And one put back?
-  bool is_first(double length, std::int32_t trajectory) const { return comes_first(length, key(length, trajectory)); }
-  bool is_first(const Piece& piece, double length) const { return comes_first(length, key(piece, length)); }
+  /// Would a stretch of this length come first? And one of a piece put back?
+  bool is_first(const Stretch& stretch, double length, std::int32_t trajectory) const {
+    return is_long_enough(stretch, length, trajectory) && comes_first(key(length, trajectory));
+  }
+  bool is_first(const Piece& piece, const Stretch& stretch, double length) const {
+    return is_long_enough(stretch, length, piece.trajectory()) && comes_first(key(piece, length));
+  }
 
   /// Forgets all trajectories and pieces.
   void clear();
@@ -60,7 +64,11 @@ class Candidates {
 
  private:
   double key(const Piece& piece, double length) const { return std::min(key(length, piece.trajectory()), piece.key); }
-  bool comes_first(double length, double key) const;
+  bool comes_first(double key) const { return heap_.empty() || key >= heap_.front().key; }
+  /// What was left off may be longer.
+  bool is_long_enough(const Stretch& stretch, double length, std::int32_t trajectory) const {
+    return length >= minimum_length_ || trajectories_[trajectory].is_left_off_at(stretch);
+  }
   void insert(const Piece& piece, double length);
   void prefetch_next() const;
   double key(double length, std::int32_t trajectory) const {

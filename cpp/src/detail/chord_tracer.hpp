@@ -7,7 +7,7 @@
 #include "detail/self_approach.hpp"
 #include "detail/sheet.hpp"
 #include "detail/trajectories.hpp"
-#include "detail/triangle_rings.hpp"
+#include "detail/triangle_marks.hpp"
 #include "detail/visited_chords.hpp"
 #include "pectinate/tracing.hpp"
 
@@ -46,10 +46,10 @@ class ChordTracer {
  private:
   StopReason walk(const Chord& start, Role exit, const Obstacles& obstacles, Chords& chords);
   bool comes_back(const Chord& chord, double arc);
-  void prefetch(std::int32_t triangle, bool mind_others) const {
+  void prefetch(std::int32_t triangle, bool minds_others) const {
     __builtin_prefetch(crossings_.data() + triangle);
     visited_.prefetch(triangle);
-    if (mind_others) occupancy_.stopped().prefetch(triangle);
+    if (minds_others) occupancy_.stopped().prefetch(triangle);
   }
 
   const StreamlineTracer& tracer_;

@@ -15,7 +15,8 @@ void prefer_large_pages(void* memory, std::size_t size);
 /// is written first, takes longer.
 void back_with_pages(void* memory, std::size_t size);
 
-/// An empty vector with room for so many elements, in large pages where it fills such.
+/// An empty vector with room for so many elements, all or nearly all of which there will be; in large pages where it
+/// fills such.
 template <class T>
 std::vector<T> roomy_vector(std::size_t count) {
   std::vector<T> result;
@@ -76,7 +77,7 @@ class LargePageAllocator {
 template <class T>
 using LargeArray = std::vector<T, LargePageAllocator<T>>;
 
-/// So many elements without a value.
+/// So many elements, all of which will be written to soon.
 template <class T>
 LargeArray<T> large_array(std::size_t count) {
   LargeArray<T> result;
