@@ -157,9 +157,10 @@ TEST_CASE("long lines: what was left off runs on to its natural ends when it is 
   auto roomy = with(0.7), polished = with(0.8);
   roomy.seed_clearance = 1.3;
   polished.polishing_rounds = 5;
-  for (const double slope : {0.0, 0.004, 0.02}) {
-    const auto field = field_of(
-        mesh, [&](const Vector& c, const Vector&) -> Vector { return Vector(1, slope * std::sin(c.x() / 90), 0); });
+  for (const double slope : {0.02, 0.1}) {
+    const auto field = field_of(mesh, [&](const Vector& c, const Vector&) -> Vector {
+      return Vector(1, slope * std::sin(c.x() / 90 + c.y() / 5), 0);
+    });
     for (auto options : {with(0.5), with(0.9), roomy, polished}) {
       const double separation = options.separation_distance;
       const auto placement = checked(mesh, field, options);

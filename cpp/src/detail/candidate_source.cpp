@@ -114,7 +114,7 @@ void CandidateSource::add_hugging(std::int32_t triangle) {
     for (const double coordinate : {low - gap, high + gap}) {
       if (!(coordinate > least_position && coordinate < 1 - least_position)) continue;
       if (occupancy_.unseeded().contains(triangle, coordinate)) continue;
-      serve(tracer_.add({triangle, coordinate}, {.others = true, .served = &served_}, true).stretch());
+      serve(tracer_.add({triangle, coordinate}, {.others = true}, true).stretch());
     }
   }
 }

@@ -13,8 +13,7 @@ namespace {
 constexpr double kept_from = 64;
 constexpr std::int64_t kept_every = 32;
 
-/// A trajectory is left off when of the last so many chords every eighth lies in a triangle that is served: there are
-/// others beside it, which go where it goes.
+/// A trajectory is left off when of the last so many chords every eighth lies in a served triangle: others go there.
 constexpr std::int64_t most_served = 256, looked_at_every = 8;
 
 /// d_sep, if it is the same everywhere, or 0.
