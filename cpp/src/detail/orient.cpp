@@ -91,7 +91,7 @@ std::vector<bool> points_inwards(const std::vector<Vec3>& vertices, const std::v
   }
   for (std::size_t first = 0, last = 0; first < triangles.size(); first = last) {
     const auto component = triangle_components[first];
-    const Vector from = origin[component];
+    const Vector& from = origin[component];
     double sum = 0;  // of a run of triangles
     for (; last < triangles.size() && triangle_components[last] == component; ++last) {
       const auto& [a, b, c] = triangles[last];
