@@ -43,9 +43,7 @@ class CandidateSource {
   void add_in_gaps(const std::vector<std::int32_t>& triangles, const std::function<double(const Interval&)>& start_in);
 
   /// A candidate from there to its natural ends.
-  Stretch add(const ChordPlace& start, bool hugs = false) {
-    return tracer_.add(start, {.others = true}, hugs).stretch();
-  }
+  Stretch add(const ChordPlace& start) { return tracer_.add(start, {.others = true}, false).stretch(); }
   bool is_free(const ChordPlace& start) const {
     return !occupancy_.stopped().contains(start.triangle, start.coordinate);
   }

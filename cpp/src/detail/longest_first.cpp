@@ -145,7 +145,7 @@ class LineFiller::Implementation {
       if (!candidates_.is_first(piece, stretch, length)) {
         candidates_.push_back(piece, stretch, length);
       } else if (is_left_off_at(stretch, piece.trajectory())) {
-        trace_to_ends(stretch, piece.trajectory());
+        trace_to_ends(stretch);
       } else {
         place_best(stretch, piece);
       }
@@ -157,12 +157,11 @@ class LineFiller::Implementation {
   }
 
   /// Puts, in place of a stretch at whose end a trajectory was left off, all of the curve that is free.
-  void trace_to_ends(const Stretch& stretch, std::int32_t trajectory) {
+  void trace_to_ends(const Stretch& stretch) {
     const auto& chord = chords_[(stretch.first + stretch.last) / 2];
     const ChordPlace middle{chord.triangle(), chord.coordinate};
-    const bool hugs = candidates_.trajectory(trajectory).hugs;
     make_room();
-    source_.add(middle, hugs);
+    source_.add(middle);
   }
 
   /// Cuts off from all pieces what is not free any more.
