@@ -107,43 +107,46 @@ class SheetMaker {
     return measure_chords(faces);
   }
 
-  /// Fills a triangle's records, but for what its neighbours' must be known for. Reads before it writes: for all that
-  /// the compiler knows, what is written might be what is read next.
+  /// What is known of a side before its neighbour's records are there.
+  struct Side {
+    std::int32_t vertex;  // where it begins: the corner low, middle or high, by Role
+    std::int32_t neighbour;
+    std::uint8_t code;
+    double cosine;
+  };
+
+  Side side_of_triangle(std::int32_t t, Role role, int middle, const ChordMeasures& measures, std::int32_t lane) const {
+    static constexpr double signs[2] = {-1, 1};
+    const int k = side_of(role, middle);
+    const auto across = mesh_.neighbour(t, k);
+    const unsigned runs_along = mesh_.sides_running_along(t) >> k & 1;
+    // The side there will be replaced by its role. Chord coordinates run low to high, sides run middle-low, low-high,
+    // high-middle.
+    const auto side_there = static_cast<Role>(across.side & 3);
+    return {vertex_ranks_[mesh_.triangles()[t][k]], across.triangle < 0 ? -1 : sheet_.ranks[across.triangle],
+            TriangleCrossings::make_code(side_there, runs_along != (role == low_high), 0),
+            measures.cosine[k][lane] * signs[runs_along]};
+  }
+
+  /// Fills a triangle's records, but for what its neighbours' must be known for. Nothing goes through small arrays: to
+  /// read from them more at a time than was written would wait for all that was written before, which lies scattered.
   void fill(std::int32_t t, const ChordMeasures& measures, std::int32_t lane) {
     const bool has_direction = field_.has_direction(t);
     const int m = has_direction ? static_cast<int>(measures.middle[lane]) : 0;
-    static constexpr double signs[2] = {-1, 1};
-    const auto& corners = mesh_.triangles()[t];
-    const unsigned sides_running_along = mesh_.sides_running_along(t);
-    const auto* const vertex_ranks = vertex_ranks_.data();
-    const auto* const ranks = sheet_.ranks.data();
-    const auto i = ranks[t];
-    std::array<std::int32_t, 3> vertices, neighbours;
-    std::array<std::uint8_t, 3> codes;
-    SideCosines cosines;
-    for (const auto role : {low_high, low_middle, middle_high}) {
-      const int k = side_of(role, m);  // begins at the corner low, middle or high, by Role
-      const auto across = mesh_.neighbour(t, k);
-      const unsigned runs_along = sides_running_along >> k & 1;
-      vertices[role] = vertex_ranks[corners[k]];
-      neighbours[role] = across.triangle < 0 ? -1 : ranks[across.triangle];
-      const double cosine = measures.cosine[k][lane];
-      cosines[role] = cosine * signs[runs_along];
-      // The side there will be replaced by its role. Chord coordinates run low to high, sides run middle-low, low-high,
-      // high-middle.
-      const auto side_there = static_cast<Role>(across.side & 3);
-      codes[role] = TriangleCrossings::make_code(side_there, runs_along != (role == low_high), 0);
-    }
+    const auto i = sheet_.ranks[t];
+    const Side low = side_of_triangle(t, low_high, m, measures, lane);
+    const Side middle = side_of_triangle(t, low_middle, m, measures, lane);
+    const Side high = side_of_triangle(t, middle_high, m, measures, lane);
     sheet_.mesh_triangles[i] = t;
-    sheet_.corners[i] = vertices;
+    sheet_.corners[i] = {low.vertex, middle.vertex, high.vertex};
     auto& crossings = sheet_.crossings[i];
-    crossings.neighbours = neighbours;
-    crossings.codes = codes;
+    crossings.neighbours = {low.neighbour, middle.neighbour, high.neighbour};
+    crossings.codes = {low.code, middle.code, high.code};
     crossings.middle = static_cast<std::uint8_t>(m);
     crossings.split = has_direction ? measures.split[lane] : 0;
     crossings.longest_chord = has_direction ? static_cast<float>(measures.longest_chord[lane]) : 0;
     crossings.width = has_direction ? static_cast<float>(measures.width[lane]) : 0;
-    cosines_[i] = has_direction ? cosines : no_cosines;
+    cosines_[i] = has_direction ? SideCosines{low.cosine, middle.cosine, high.cosine} : no_cosines;
   }
 
   /// Notes what lies beyond all sides.
