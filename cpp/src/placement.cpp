@@ -237,14 +237,6 @@ std::size_t most_points(const StreamlineTracer& tracer) {
   return static_cast<std::size_t>(std::min(width / least, most_reserved * tracer.sheet().triangle_count()));
 }
 
-double directed_area(const SurfaceMesh& mesh, const OrientationField& field) {
-  double area = 0;
-  for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-    if (field.has_direction(static_cast<std::int32_t>(t))) area += mesh.triangle_areas()[t];
-  }
-  return area;
-}
-
 /// The mean of d_sep over the length of the streamlines.
 double mean_separation(const StreamlineTracer& tracer, const Placement& placement) {
   const auto& constant = tracer.options();
@@ -353,7 +345,7 @@ Placement place_streamlines(const SurfaceMesh& mesh, const OrientationField& fie
   const double coverage =
       place({mesh, tracer, singular_region(mesh, field, options.singularity_radius)}, options, progress, placement);
   const auto polishing_rounds = placement.statistics.polishing_rounds;
-  placement.statistics = placement_statistics(placement.lengths, placement.stop_reasons, directed_area(mesh, field),
+  placement.statistics = placement_statistics(placement.lengths, placement.stop_reasons, tracer.sheet().directed_area,
                                               mean_separation(tracer, placement), coverage);
   placement.statistics.polishing_rounds = polishing_rounds;
   placement.options = options;

@@ -68,6 +68,7 @@ Piece Candidates::pop() {
 /// The next piece is elsewhere in memory.
 void Candidates::prefetch_next() const {
   if (heap_.empty()) return;
+  __builtin_prefetch(&trajectories_[heap_.front().trajectory()]);
   constexpr std::int64_t at_first = 32, chords_per_line = 64 / sizeof(Chord);
   const auto [first, last] = heap_.front().stretch();
   for (auto i = first; i < std::min(last, first + at_first); i += chords_per_line) __builtin_prefetch(&chords_[i]);

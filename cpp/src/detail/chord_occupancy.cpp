@@ -25,6 +25,9 @@ constexpr float size_slack = 4e-7F, distance_slack = 4e-6F;
 constexpr double coarse_tolerance = 0.03;
 constexpr std::size_t most_joined = 8;
 
+/// Of the triangles that the search will visit, the records are fetched so many before.
+constexpr std::size_t visited_ahead = 4;
+
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
 /// In place of a distance that is not measured yet.
@@ -156,6 +159,7 @@ void ChordOccupancy::add_block(const Polyline& line, std::size_t first, std::siz
   // Most of the band is known to be well inside from the way that led there; what stops streamlines takes seeds, too.
   const float depth = depth_inside(stops());
   for (std::size_t i = 0; i < queue_.size(); ++i) {
+    if (i + visited_ahead < queue_.size()) prefetch(queue_[i + visited_ahead].triangle);
     const auto reached = queue_[i];
     if (reached.distance + std::abs(tiles_[reached.triangle].radius) <= depth) {
       reach_neighbours(reached);
@@ -272,8 +276,6 @@ void ChordOccupancy::visit_border(Reached reached, const Polyline& line, std::si
   const float radius = std::abs(tile.radius);
   // A jagged border can part triangles that lie side by side: there the search goes on one edge farther.
   const float limit = tile.radius < 0 ? 3 * radius : radius;
-  __builtin_prefetch(&sheet_.corners[reached.triangle]);
-  __builtin_prefetch(&sheet_.crossings[reached.triangle]);
   block_.nearest = unknown;
   const float coarse = distance(block_.coarse, {tile.x, tile.y, tile.z}), error = block_.coarse_error;
   if (coarse - error > limit + block_.greatest_reach) return;
@@ -379,17 +381,17 @@ double ChordOccupancy::free_share(std::int32_t triangle, const IntervalSets& set
   return share;
 }
 
+/// Summed in the mesh's order, so that no bit depends on the axes.
 double ChordOccupancy::coverage() const {
-  double free = 0, taken = 0;
-  for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
+  constexpr std::int32_t ahead = 16;
+  const auto count = sheet_.triangle_count();
+  double free = 0;
+  for (std::int32_t t = 0; t < count; ++t) {
+    stopped_.prefetch(sheet_.ranks[std::min(t + ahead, count - 1)]);
     const auto rank = sheet_.ranks[t];
-    if (!sheet_.has_direction(rank)) continue;
-    const double area = mesh_.triangle_areas()[t];
-    const double share = stopped_.is_full(rank) ? 0 : free_share(rank, stopped_);
-    free += share * area;
-    taken += (1 - share) * area;
+    if (!stopped_.is_full(rank)) free += free_share(rank, stopped_) * mesh_.triangle_areas()[t];
   }
-  return taken / (free + taken);
+  return 1 - free / sheet_.directed_area;
 }
 
 }  // namespace pectinate::detail

@@ -112,6 +112,11 @@ class ChordOccupancy {
     float distance;
   };
 
+  void prefetch(std::int32_t triangle) const {
+    __builtin_prefetch(&sheet_.corners[triangle]);
+    __builtin_prefetch(&sheet_.crossings[triangle]);
+    stopped_.prefetch(triangle);
+  }
   void reach(std::int32_t triangle, float distance);
   void reach_from(const Tile& from, float distance, std::int32_t triangle);
   void reach_neighbours(const Reached& from);

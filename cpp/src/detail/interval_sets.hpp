@@ -73,7 +73,7 @@ class IntervalSets {
 
   static Range range_around(const Interval& interval);
   static Interval interval_of(const Range& range) { return {range.low / units, range.high / units}; }
-  std::int32_t make_node(const Node& node);
+  std::int32_t make_node(const Range& range, std::int32_t next);
   void release(std::int32_t node);
   void release_all(std::int32_t node);
 
@@ -107,7 +107,8 @@ inline void IntervalSets::add(std::int32_t item, const Interval& interval) {
   auto before = empty;
   auto& [first, taken, touched] = items_[item];
   for (auto node = first; node >= 0;) {
-    const auto [other, next] = nodes_[node];
+    const auto& other = nodes_[node].range;
+    const auto next = nodes_[node].next;
     if (other.low <= range.high && other.high >= range.low) {
       range = {std::min(range.low, other.low), std::max(range.high, other.high)};
       (before >= 0 ? nodes_[before].next : first) = next;
@@ -120,7 +121,7 @@ inline void IntervalSets::add(std::int32_t item, const Interval& interval) {
   if (range.low == 0 && range.high == units) {
     fill(item);
   } else {
-    first = make_node({range, first});
+    first = make_node(range, first);
     // Cells [from, to), rounded inwards and outwards.
     const auto bits = [](unsigned from, unsigned to) {
       return static_cast<std::uint16_t>(from < to ? (1U << to) - (1U << from) : 0U);
@@ -132,14 +133,14 @@ inline void IntervalSets::add(std::int32_t item, const Interval& interval) {
   }
 }
 
-inline std::int32_t IntervalSets::make_node(const Node& node) {
+inline std::int32_t IntervalSets::make_node(const Range& range, std::int32_t next) {
   if (released_ < 0) {
-    nodes_.push_back(node);
+    nodes_.emplace_back(range, next);
     return static_cast<std::int32_t>(nodes_.size()) - 1;
   }
   const auto index = released_;
   released_ = nodes_[index].next;
-  nodes_[index] = node;
+  nodes_[index] = {range, next};
   return index;
 }
 

@@ -67,6 +67,7 @@ class SheetMaker {
     sheet_.crossings = large_array<TriangleCrossings>(count);
     for (std::int32_t t = 0; t < count; t += measured_lanes) measure(t, std::min(count - t, measured_lanes));
     set_exits();
+    sheet_.directed_area = directed_area();
     return std::move(sheet_);
   }
 
@@ -80,6 +81,14 @@ class SheetMaker {
     __builtin_prefetch(&sheet_.corners[i], 1);
     __builtin_prefetch(&sheet_.crossings[i], 1);
     __builtin_prefetch(&cosines_[i], 1);
+  }
+
+  double directed_area() const {
+    double area = 0;
+    for (std::int32_t t = 0; t < static_cast<std::int32_t>(mesh_.triangle_count()); ++t) {
+      if (field_.has_direction(t)) area += mesh_.triangle_areas()[t];
+    }
+    return area;
   }
 
   /// Fewer than a full set of lanes are filled up with the last one.

@@ -21,6 +21,7 @@ struct Sheet {
   LargeArray<Vector> vertices;                      ///< in an order of their own
   LargeArray<std::array<std::int32_t, 3>> corners;  ///< vertices: low, middle, high
   LargeArray<TriangleCrossings> crossings;
+  double directed_area = 0;  ///< of the triangles with an orientation
 
   std::int32_t triangle_count() const { return static_cast<std::int32_t>(crossings.size()); }
   bool has_direction(std::int32_t triangle) const { return crossings[triangle].split > 0; }
