@@ -17,10 +17,21 @@ inline Lanes greatest(const Lanes& a, const Lanes& b) {
 inline Lanes all(float value) {
   return Lanes{} + value;
 }
+/// By halves: one after the other they would wait for each other.
 inline float least_of(const Lanes& lanes) {
-  float result = lanes[0];
-  for (int i = 1; i < floats; ++i) result = lanes[i] < result ? lanes[i] : result;
-  return result;
+  using Quarter = float __attribute__((vector_size(4 * sizeof(float))));
+  Quarter four;
+  __builtin_memcpy(&four, &lanes, sizeof four);
+  for (int i = 4; i < floats; i += 4) {
+    Quarter next;
+    __builtin_memcpy(&next, reinterpret_cast<const float*>(&lanes) + i, sizeof next);
+    four = four < next ? four : next;
+  }
+  const Quarter halves = __builtin_shufflevector(four, four, 2, 3, 0, 1);
+  four = four < halves ? four : halves;
+  const Quarter pairs = __builtin_shufflevector(four, four, 1, 0, 3, 2);
+  four = four < pairs ? four : pairs;
+  return four[0];
 }
 /// One bit for each lane of a comparison.
 inline unsigned bits(const decltype(Lanes{} < Lanes{})& mask) {
@@ -35,7 +46,8 @@ inline unsigned bits(const decltype(Lanes{} < Lanes{})& mask) {
 
 inline float distance(Segments& segments, const FloatPoint& point) {
   Lanes nearest = all(1e30F);
-  for (int i = 0; i < segments.padded_count(); i += floats) {
+  const int count = segments.padded_count();
+  for (int i = 0; i < count; i += floats) {
     Lanes x = point.x - load(segments.x, i), y = point.y - load(segments.y, i), z = point.z - load(segments.z, i);
     const Lanes dx = load(segments.dx, i), dy = load(segments.dy, i), dz = load(segments.dz, i);
     const Lanes projected = (x * dx + y * dy + z * dz) * load(segments.inverse_square, i);
