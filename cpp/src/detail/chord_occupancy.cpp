@@ -276,6 +276,11 @@ void ChordOccupancy::visit_border(Reached reached, const Polyline& line, std::si
   const float radius = std::abs(tile.radius);
   // A jagged border can part triangles that lie side by side: there the search goes on one edge farther.
   const float limit = tile.radius < 0 ? 3 * radius : radius;
+  // What is taken already is only passed through; known to be near, it needs no distance.
+  if (reached.distance <= limit + block_.least_reach && is_full(reached.triangle)) {
+    reach_neighbours(reached);
+    return;
+  }
   block_.nearest = unknown;
   const float coarse = distance(block_.coarse, {tile.x, tile.y, tile.z}), error = block_.coarse_error;
   if (coarse - error > limit + block_.greatest_reach) return;

@@ -117,6 +117,7 @@ class ChordOccupancy {
     __builtin_prefetch(&sheet_.crossings[triangle]);
     stopped_.prefetch(triangle);
   }
+  bool is_full(std::int32_t triangle) const { return stopped_.is_full(triangle) && unseeded().is_full(triangle); }
   void reach(std::int32_t triangle, float distance);
   void reach_from(const Tile& from, float distance, std::int32_t triangle);
   void reach_neighbours(const Reached& from);
