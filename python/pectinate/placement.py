@@ -177,8 +177,9 @@ class Placement:
         What the streamlines lie on.
     points
         (N, 3) float64, mm: all streamlines, one after the other. Each lies on an edge, but for ends of method
-        "longest" that stop near others: those are where the others are d_sep away, in the midst of triangles
-        (on edges where the rest of the triangle is longer than 64 d_sep).
+        "longest" that stop near others or themselves: those are where the others, or a part of their own, are d_sep
+        away, in the midst of triangles (on edges where the rest of the triangle is longer than 64 d_sep, or where what
+        they stopped for was left out).
     offsets
         (n + 1,) int64: streamline i owns points[offsets[i]:offsets[i + 1]].
     segment_triangles

@@ -114,13 +114,13 @@ inline bool same_bytes(const Placement& a, const Placement& b) {
          a.statistics.coverage == b.statistics.coverage;
 }
 
-/// Points lie on sides, not on vertices, but for ends of streamlines that stop near others.
+/// Points lie on sides, not on vertices, but for ends of streamlines that stop near others or themselves.
 inline void check_points(const SurfaceMesh& mesh, const Placement& placement) {
   std::vector<std::uint8_t> may_lie_inside(placement.points.size(), 0);
   for (std::size_t i = 0; i < placement.lengths.size(); ++i) {
     const auto& reasons = placement.stop_reasons[i];
-    may_lie_inside[placement.offsets[i]] = reasons[0] == StopReason::near_other;
-    may_lie_inside[placement.offsets[i + 1] - 1] = reasons[1] == StopReason::near_other;
+    may_lie_inside[placement.offsets[i]] = reasons[0] == StopReason::near_other || reasons[0] == StopReason::near_itself;
+    may_lie_inside[placement.offsets[i + 1] - 1] = reasons[1] == StopReason::near_other || reasons[1] == StopReason::near_itself;
   }
   for (std::size_t p = 0; p < placement.points.size(); ++p) {
     const auto t = placement.point_triangles[p];
@@ -256,6 +256,22 @@ inline void check_ends_near_others(const Placement& placement) {
       CHECK(room_at_end(segments, placement, i, end) <= 1 + 2e-3);
     }
   }
+}
+
+/// The same for ends in the midst of triangles of streamlines that stop near themselves; returns how many there are.
+/// What others stopped for may have been left out.
+inline int check_ends_near_themselves(const Placement& placement) {
+  const auto segments = segments_of(placement);
+  int count = 0;
+  for (std::size_t i = 0; i < placement.lengths.size(); ++i) {
+    for (const int end : {0, 1}) {
+      const auto& weights = placement.barycentric[end == 0 ? placement.offsets[i] : placement.offsets[i + 1] - 1];
+      if (placement.stop_reasons[i][end] != StopReason::near_itself || std::ranges::count(weights, 0.0) > 0) continue;
+      CHECK(room_at_end(segments, placement, i, end) <= 1 + 2e-3);
+      ++count;
+    }
+  }
+  return count;
 }
 
 /// With exact occupancy: each streamline had, somewhere, room to start beside those placed before it; those of method

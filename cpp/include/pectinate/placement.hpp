@@ -75,8 +75,9 @@ struct PlacementOptions {
 
 /// Evenly spaced streamlines, one after the other in the order of placement. Streamline i owns the points
 /// [offsets[i], offsets[i + 1]) and the segments [offsets[i] - i, offsets[i + 1] - i - 1). Points lie on edges, but for
-/// ends of method `longest` that stop near others: those are where the others are d_sep away, in the midst of
-/// triangles (on edges where the rest of the triangle is longer than 64 d_sep).
+/// ends of method `longest` that stop near others or themselves: those are where the others, or a part of their own,
+/// are d_sep away, in the midst of triangles (on edges where the rest of the triangle is longer than 64 d_sep, or where
+/// what they stopped for was left out).
 struct Placement {
   std::vector<Vec3> points;
   std::vector<std::int64_t> offsets;            ///< streamline count + 1

@@ -24,6 +24,7 @@ void HeldLines::place(std::int32_t line, const PlacedLine& placed) {
   held.beyond = {};
   const auto ahead = chords_ahead(sheet_, placed);
   for (const int end : {0, 1}) {
+    if (placed.stop_reasons[end] != StopReason::near_other) continue;
     if (const auto& chord = ahead[end]) held.beyond[end] = {chord->triangle(), chord->coordinate};
   }
   put_back(line);

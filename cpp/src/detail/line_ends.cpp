@@ -67,6 +67,9 @@ class EndExtender {
   double separation(std::int32_t triangle) const {
     return tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
   }
+  StopReason stop_reason(const Extension& extension) const {
+    return placement_.stop_reasons[extension.line][extension.end];
+  }
   std::int32_t mesh_triangle(const Extension& extension) const {
     return sheet_.mesh_triangles[extension.chord.triangle()];
   }
@@ -116,8 +119,12 @@ class EndExtender {
         keep_from(point(segment), point(segment + 1), stop_distance(triangle));
       }
     });
-    if (!is_cut) return 0;  // whatever it was that stopped it, it still does
+    // Whatever it was that stopped it, if it is not found it still does.
+    const bool stopped_near_itself = stop_reason(extension) == StopReason::near_itself;
+    if (!is_cut && !stopped_near_itself) return 0;
+    is_cut = false;
     visit_itself(index, keep_from);
+    if (!is_cut && stopped_near_itself) return 0;
     return share < least ? 0 : share;
   }
 

@@ -41,7 +41,10 @@ ChordsAhead chords_ahead(const Sheet& sheet, const PlacedLine& line) {
   outwards[0].code ^= 1;
   ChordsAhead ahead;
   for (const int end : {0, 1}) {
-    if (line.stop_reasons[end] == StopReason::near_other) ahead[end] = chord_ahead(sheet, outwards[end]);
+    const auto reason = line.stop_reasons[end];
+    if (reason == StopReason::near_other || reason == StopReason::near_itself) {
+      ahead[end] = chord_ahead(sheet, outwards[end]);
+    }
   }
   return ahead;
 }

@@ -20,8 +20,8 @@ struct PlacedLine {
   std::array<StopReason, 2> stop_reasons{};
 };
 
-/// At the first and the last point of a line, the chord that it does not take because another is near; it runs away
-/// from the line.
+/// At the first and the last point of a line, the chord that it does not take because another line or a part of its own
+/// is near; it runs away from the line.
 ChordsAhead chords_ahead(const Sheet& sheet, const PlacedLine& line);
 
 /// Makes room for so many points.
