@@ -313,4 +313,19 @@ TEST_CASE("exact placement: where candidates run on beside one another, most are
   check_segment_separation(placement, 0.1);
 }
 
+TEST_CASE("exact placement: around what is smaller than d_sep no streamline comes to a triangle twice") {
+  const auto mesh = jittered_grid(12, 9).mesh();
+  for (const auto& hard : hard_fields) {
+    CAPTURE(hard.name);
+    const auto placement = checked(mesh, make_field(mesh, hard), with(50));  // criterion 5 alone would allow it
+    for (std::size_t i = 0; i < placement.lengths.size(); ++i) {
+      const auto line = static_cast<std::ptrdiff_t>(i);
+      std::vector<std::int32_t> crossed(placement.segment_triangles.begin() + placement.offsets[i] - line,
+                                        placement.segment_triangles.begin() + placement.offsets[i + 1] - line - 1);
+      std::ranges::sort(crossed);
+      CHECK(std::ranges::adjacent_find(crossed) == crossed.end());
+    }
+  }
+}
+
 }  // namespace pectinate::test
