@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <numeric>
 #include <optional>
 
 #include "detail/chord_occupancy.hpp"
@@ -30,7 +31,9 @@ constexpr auto progress_interval = std::chrono::milliseconds(50);
 /// A callback that takes long, on a large surface, is called more seldom: at most this share of the time is its.
 constexpr int slowest_share = 20;
 /// Candidates that a thread traces between two looks at the clock.
-constexpr std::int64_t candidates_per_look = 8;
+constexpr std::int64_t candidates_per_look = 16;
+/// To wake another thread takes about as long as tracing so many points.
+constexpr std::int64_t least_shared_points = 4000;
 
 Clearance clearance_of(const PlacementOptions& options) {
   return {options.test_distance, options.seed_clearance};
@@ -146,15 +149,22 @@ class Contest {
 
   /// None if it was cancelled.
   std::optional<Outcome> hold(const std::vector<Seed>& seeds, const Occupancy& occupancy, Progress& progress) {
-    for (auto& desk : desks_) desk.winner = none;
+    const bool is_shared = point_count() >= least_shared_points;
+    for (auto& desk : desks_) desk.start();
     lengths_.assign(seeds.size(), 0);
     const auto slice = candidates_per_look * pool_.thread_count();
     const auto count = static_cast<std::int64_t>(seeds.size());
     for (std::int64_t first = 0; first < count; first += slice) {
       if (progress.is_cancelled([&] { return occupancy.coverage(); })) return std::nullopt;
-      pool_.run(std::min(slice, count - first), [&](std::int64_t index, int thread) {
+      const auto work = [&](std::int64_t index, int thread) {
         trace(first + index, seeds[first + index], occupancy, desks_[thread]);
-      });
+      };
+      const auto size = std::min(slice, count - first);
+      if (is_shared) {
+        pool_.run(size, work);
+      } else {
+        for (std::int64_t index = 0; index < size; ++index) work(index, 0);
+      }
     }
     return judge(seeds);
   }
@@ -166,11 +176,23 @@ class Contest {
   struct Desk {
     WorkspacePointer best = StreamlineTracer::make_workspace(), current = StreamlineTracer::make_workspace();
     const Streamline* best_line = nullptr;
-    std::int64_t winner = none;
+    std::int64_t winner = none, point_count = 0;
+
+    void start() {
+      winner = none;
+      point_count = 0;
+    }
   };
+
+  /// Of all candidates of the last contest: the next one's will have about as many.
+  std::int64_t point_count() const {
+    return std::accumulate(desks_.begin(), desks_.end(), std::int64_t{0},
+                           [](std::int64_t sum, const Desk& desk) { return sum + desk.point_count; });
+  }
 
   void trace(std::int64_t index, const Seed& seed, const Occupancy& occupancy, Desk& desk) {
     const auto& line = tracer_.trace(seed, &occupancy, *desk.current);
+    desk.point_count += std::ssize(line.points);
     lengths_[index] = line.length >= minimum_length_ ? line.length : 0;
     if (lengths_[index] > 0 && (desk.winner == none || lengths_[index] > lengths_[desk.winner])) {
       std::swap(desk.best, desk.current);

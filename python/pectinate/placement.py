@@ -128,7 +128,7 @@ def place_streamlines(
     random_seed : int
         In [0, 2^64).
     thread_count : int
-        At least 1.
+        At least 1. They share the candidates of methods with random seeds, at steps where these are long enough.
 
     Returns
     -------

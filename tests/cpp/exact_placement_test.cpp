@@ -284,7 +284,7 @@ TEST_CASE("exact placement: lines stop at borders, there alone, and say so") {
   }
 }
 
-TEST_CASE("exact placement: spirals keep from themselves, just so far, however many of their candidates are cut and dropped") {
+TEST_CASE("exact placement: spirals keep from themselves, just so far, however many candidates are cut and dropped") {
   const auto mesh = jittered_grid(24, 18).mesh();
   int count = 0;
   for (const double inwards : {0.003, 0.02, 0.1}) {

@@ -117,10 +117,13 @@ inline bool same_bytes(const Placement& a, const Placement& b) {
 /// Points lie on sides, not on vertices, but for ends of streamlines that stop near others or themselves.
 inline void check_points(const SurfaceMesh& mesh, const Placement& placement) {
   std::vector<std::uint8_t> may_lie_inside(placement.points.size(), 0);
+  const auto is_near = [](StopReason reason) {
+    return reason == StopReason::near_other || reason == StopReason::near_itself;
+  };
   for (std::size_t i = 0; i < placement.lengths.size(); ++i) {
     const auto& reasons = placement.stop_reasons[i];
-    may_lie_inside[placement.offsets[i]] = reasons[0] == StopReason::near_other || reasons[0] == StopReason::near_itself;
-    may_lie_inside[placement.offsets[i + 1] - 1] = reasons[1] == StopReason::near_other || reasons[1] == StopReason::near_itself;
+    may_lie_inside[placement.offsets[i]] = is_near(reasons[0]);
+    may_lie_inside[placement.offsets[i + 1] - 1] = is_near(reasons[1]);
   }
   for (std::size_t p = 0; p < placement.points.size(); ++p) {
     const auto t = placement.point_triangles[p];

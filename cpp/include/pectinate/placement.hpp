@@ -68,7 +68,9 @@ struct PlacementOptions {
   double abrupt_turn_angle = TracingOptions{}.abrupt_turn_angle;  ///< radians, in (0, pi]; pi disables criterion 4
   std::int64_t max_steps = TracingOptions{}.max_steps;            ///< triangles crossed each way, >= 1
   std::uint64_t random_seed = 20190101;                           ///< the same seed gives the same bytes
-  int thread_count = 1;                                           ///< >= 1; the result does not depend on it
+  /// >= 1; the result does not depend on it. Of methods with random seeds, at steps whose candidates are long enough
+  /// for threads to share them.
+  int thread_count = 1;
   /// Called now and then with the coverage in [0, 1], from the calling thread; false ends the placement.
   std::function<bool(double coverage)> progress;
 };
