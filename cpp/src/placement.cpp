@@ -149,21 +149,21 @@ class Contest {
 
   /// None if it was cancelled.
   std::optional<Outcome> hold(const std::vector<Seed>& seeds, const Occupancy& occupancy, Progress& progress) {
-    const bool is_shared = point_count() >= least_shared_points;
+    const auto points_before = point_count();  // this contest will have about as many
     for (auto& desk : desks_) desk.start();
     lengths_.assign(seeds.size(), 0);
-    const auto slice = candidates_per_look * pool_.thread_count();
     const auto count = static_cast<std::int64_t>(seeds.size());
-    for (std::int64_t first = 0; first < count; first += slice) {
+    for (std::int64_t first = 0, last = 0; first < count; first = last) {
       if (progress.is_cancelled([&] { return occupancy.coverage(); })) return std::nullopt;
+      const bool is_shared = std::max(points_before, point_count()) >= least_shared_points;
+      last = std::min(count, first + candidates_per_look * (is_shared ? pool_.thread_count() : 1));
       const auto work = [&](std::int64_t index, int thread) {
         trace(first + index, seeds[first + index], occupancy, desks_[thread]);
       };
-      const auto size = std::min(slice, count - first);
       if (is_shared) {
-        pool_.run(size, work);
+        pool_.run(last - first, work);
       } else {
-        for (std::int64_t index = 0; index < size; ++index) work(index, 0);
+        for (std::int64_t index = 0; index < last - first; ++index) work(index, 0);
       }
     }
     return judge(seeds);
@@ -184,7 +184,7 @@ class Contest {
     }
   };
 
-  /// Of all candidates of the last contest: the next one's will have about as many.
+  /// Of all candidates of the last contest, or of that at hand.
   std::int64_t point_count() const {
     return std::accumulate(desks_.begin(), desks_.end(), std::int64_t{0},
                            [](std::int64_t sum, const Desk& desk) { return sum + desk.point_count; });

@@ -128,7 +128,7 @@ def place_streamlines(
     random_seed : int
         In [0, 2^64).
     thread_count : int
-        At least 1. They share the candidates of methods with random seeds, at steps where these are long enough.
+        At least 1. Methods with random seeds use more than one, at steps with enough to trace.
 
     Returns
     -------
@@ -178,8 +178,9 @@ class Placement:
     points
         (N, 3) float64, mm: all streamlines, one after the other. Each lies on an edge, but for ends of method
         "longest" that stop near others or themselves: those are where the others, or a part of their own, are d_sep
-        away, in the midst of triangles (on edges where the rest of the triangle is longer than 64 d_sep, or where what
-        they stopped for was left out).
+        away, in the midst of triangles (on edges where that is less than 1e-3 d_sep farther on, where the rest of the
+        triangle is longer than 64 d_sep, and where the part that they stopped for is none of the streamline any
+        more).
     offsets
         (n + 1,) int64: streamline i owns points[offsets[i]:offsets[i + 1]].
     segment_triangles

@@ -2,9 +2,13 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
+#include "detail/chord_sides.hpp"
+#include "detail/placed_lines.hpp"
 #include "hard_fields.hpp"
 #include "pectinate/field_topology.hpp"
 #include "placement_checks.hpp"
@@ -109,8 +113,10 @@ TEST_CASE("stop reasons: streamlines stop about singularities, whatever the meth
   const auto mesh = jittered_grid(14, 11).mesh();
   const std::int32_t middle = 7 + 15 * 5;
   const Vector centre_of_field = detail::vector(mesh.vertices()[middle]);
-  // Half turns and start: star, vortex, wedge, trisector.
-  for (const auto& [half_turns, start] : {std::pair{2, 0.0}, {2, 1.5707963}, {1, 0.3}, {-1, 0.3}}) {
+  // Half turns and start: star, spirals, vortex, wedge, trisector.
+  constexpr double right_angle = 1.5707963;
+  for (const auto& [half_turns, start] :
+       {std::pair{2, 0.0}, {2, 1.2}, {2, 1.45}, {2, 1.53}, {2, right_angle}, {1, 0.3}, {-1, 0.3}}) {
     CAPTURE(half_turns);
     const auto field = field_about(mesh, centre_of_field, half_turns, start);
     const auto singularities = field_topology(mesh, field).singularities;
@@ -124,7 +130,7 @@ TEST_CASE("stop reasons: streamlines stop about singularities, whatever the meth
         check_singular_ends(mesh, field, placement);
         check_segment_separation(placement, 0.4);
         // Of a wedge or a trisector only the lines of measure zero run into the point, but a disc about it is met.
-        const bool is_vortex = half_turns == 2 && start > 0;
+        const bool is_vortex = half_turns == 2 && start == right_angle;
         if (!is_vortex && (half_turns == 2 || radius > 1)) CHECK(stop_count(placement, StopReason::singularity) > 0);
         CHECK(placement.statistics.coverage > 1 - 1e-6);
       }
@@ -188,6 +194,29 @@ TEST_CASE("stop reasons: a singularity keeps streamlines off its own side of a t
   }
   CHECK(lower_least >= 1.5);
   CHECK(upper_least < 0.3);
+}
+
+TEST_CASE("stop reasons: the chord ahead is one that another line, or what was cut off of its own, keeps from a line") {
+  const auto mesh = jittered_grid(6, 5).mesh();
+  const auto sheet = detail::make_sheet(mesh, constant_field(mesh, Vector(1, 0.1, 0)), 1);
+  int count = 0;
+  for (std::int32_t t = 0; t < sheet.triangle_count(); ++t) {
+    const std::vector chords{detail::make_chord(sheet, {t, sheet.crossings[t].split / 2}, true)};
+    const auto has_ahead = [&](StopReason reason, bool is_cut) {
+      const auto ahead = detail::chords_ahead(sheet, {chords, false, {reason, reason}, {is_cut, is_cut}});
+      return std::array{ahead[0].has_value(), ahead[1].has_value()};
+    };
+    const auto expected = has_ahead(StopReason::near_other, false);  // but at borders
+    count += expected[0] + expected[1];
+    for (const bool is_cut : {false, true}) {
+      CHECK(has_ahead(StopReason::near_other, is_cut) == expected);
+      CHECK(has_ahead(StopReason::near_itself, is_cut) == (is_cut ? expected : std::array{false, false}));
+      for (const auto reason : {StopReason::boundary, StopReason::abrupt_turn, StopReason::singularity}) {
+        CHECK(has_ahead(reason, is_cut) == std::array{false, false});
+      }
+    }
+  }
+  CHECK(count > sheet.triangle_count());
 }
 
 }  // namespace pectinate::test

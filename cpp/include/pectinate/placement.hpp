@@ -68,8 +68,8 @@ struct PlacementOptions {
   double abrupt_turn_angle = TracingOptions{}.abrupt_turn_angle;  ///< radians, in (0, pi]; pi disables criterion 4
   std::int64_t max_steps = TracingOptions{}.max_steps;            ///< triangles crossed each way, >= 1
   std::uint64_t random_seed = 20190101;                           ///< the same seed gives the same bytes
-  /// >= 1; the result does not depend on it. Of methods with random seeds, at steps whose candidates are long enough
-  /// for threads to share them.
+  /// >= 1; the result does not depend on it. Methods with random seeds use more than one, at steps with enough to
+  /// trace.
   int thread_count = 1;
   /// Called now and then with the coverage in [0, 1], from the calling thread; false ends the placement.
   std::function<bool(double coverage)> progress;
@@ -78,8 +78,8 @@ struct PlacementOptions {
 /// Evenly spaced streamlines, one after the other in the order of placement. Streamline i owns the points
 /// [offsets[i], offsets[i + 1]) and the segments [offsets[i] - i, offsets[i + 1] - i - 1). Points lie on edges, but for
 /// ends of method `longest` that stop near others or themselves: those are where the others, or a part of their own,
-/// are d_sep away, in the midst of triangles (on edges where the rest of the triangle is longer than 64 d_sep, or where
-/// what they stopped for was left out).
+/// are d_sep away, in the midst of triangles (on edges where that is less than 1e-3 d_sep farther on, where the rest of
+/// the triangle is longer than 64 d_sep, and where the part that they stopped for is none of the streamline any more).
 struct Placement {
   std::vector<Vec3> points;
   std::vector<std::int64_t> offsets;            ///< streamline count + 1

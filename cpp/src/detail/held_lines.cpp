@@ -19,6 +19,7 @@ void HeldLines::place(std::int32_t line, const PlacedLine& placed) {
   held.chords.assign(placed.chords.begin(), placed.chords.end());
   held.is_closed = placed.is_closed;
   held.stop_reasons = placed.stop_reasons;
+  held.is_cut = placed.is_cut;
   held.length = length_of(sheet_, placed);
   held.rank = placed_count_++;
   held.beyond = {};

@@ -17,6 +17,7 @@ struct HeldLine {
   std::vector<Chord> chords;
   bool is_closed = false;
   std::array<StopReason, 2> stop_reasons{};
+  std::array<bool, 2> is_cut{};
   double length = 0;
   std::int64_t rank = 0;  ///< how many lines were placed before
   /// The chords that would follow at its ends if no other line were near: only where one is.
@@ -40,7 +41,8 @@ class HeldLines {
   /// Puts a new line on the surface.
   void place(std::int32_t line, const PlacedLine& placed);
   PlacedLine placed(std::int32_t line) const {
-    return {lines_[line].chords, lines_[line].is_closed, lines_[line].stop_reasons};
+    const auto& held = lines_[line];
+    return {held.chords, held.is_closed, held.stop_reasons, held.is_cut};
   }
   void take_out(std::int32_t line);
   void put_back(std::int32_t line);

@@ -135,7 +135,7 @@ inline void IntervalSets::add(std::int32_t item, const Interval& interval) {
 
 inline std::int32_t IntervalSets::make_node(const Range& range, std::int32_t next) {
   if (released_ < 0) {
-    nodes_.emplace_back(range, next);
+    nodes_.push_back({range, next});
     return static_cast<std::int32_t>(nodes_.size()) - 1;
   }
   const auto index = released_;

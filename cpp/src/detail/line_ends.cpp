@@ -67,9 +67,6 @@ class EndExtender {
   double separation(std::int32_t triangle) const {
     return tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
   }
-  StopReason stop_reason(const Extension& extension) const {
-    return placement_.stop_reasons[extension.line][extension.end];
-  }
   std::int32_t mesh_triangle(const Extension& extension) const {
     return sheet_.mesh_triangles[extension.chord.triangle()];
   }
@@ -107,25 +104,34 @@ class EndExtender {
       is_cut = true;
     };
     const auto is_wanted = [&](double along) { return along < share && share >= least; };
+    const bool is_near_itself = placement_.stop_reasons[extension.line][extension.end] == StopReason::near_itself;
+    for (const bool from_itself : {is_near_itself, !is_near_itself}) {
+      if (from_itself) {
+        visit_itself(index, keep_from);
+      } else {
+        visit_others(extension, grid, is_wanted, keep_from);
+      }
+      if (!is_cut) return 0;  // what stopped it was not found, but still does
+    }
+    return share < least ? 0 : share;
+  }
+
+  /// Calls visit(start, end, distance) for all segments of others that are near an extension, and some more.
+  template <class IsWanted, class Visit>
+  void visit_others(const Extension& extension, const SegmentGrid& grid, const IsWanted& is_wanted,
+                    const Visit& visit) const {
     grid.visit_near(extension.start, extension.far, is_wanted, [&](std::int64_t segment) {
       if (segment >= point_count()) {
         const auto& other = extensions_[segment - point_count()];
         if (other.share == 0 || other.line == extension.line) return;
         const auto& placed_first = other.line < extension.line ? other : extension;
-        keep_from(other.start, other.point(), stop_distance(mesh_triangle(placed_first)));
+        visit(other.start, other.point(), stop_distance(mesh_triangle(placed_first)));
       } else if (segment < first_point(extension.line) || segment > last_point(extension.line)) {
         const bool was_first = segment < first_point(extension.line);
         const auto triangle = was_first ? placement_.point_triangles[segment] : mesh_triangle(extension);
-        keep_from(point(segment), point(segment + 1), stop_distance(triangle));
+        visit(point(segment), point(segment + 1), stop_distance(triangle));
       }
     });
-    // Whatever it was that stopped it, if it is not found it still does.
-    const bool stopped_near_itself = stop_reason(extension) == StopReason::near_itself;
-    if (!is_cut && !stopped_near_itself) return 0;
-    is_cut = false;
-    visit_itself(index, keep_from);
-    if (!is_cut && stopped_near_itself) return 0;
-    return share < least ? 0 : share;
   }
 
   /// How far those placed later keep from a streamline in a triangle.
@@ -139,10 +145,10 @@ class EndExtender {
   void visit_itself(std::size_t index, const Visit& visit) const {
     const auto& extension = extensions_[index];
     const auto first = first_point(extension.line), last = last_point(extension.line);
-    const double separation = tracer_.separation_distance(placement_.point_triangles[first]) * (1 + guard);
+    const double separation = tracer_.separation_distance(placement_.point_triangles[first]);
     double between = 0;
     const auto pass = [&](const Vector& start, const Vector& end) {
-      if (between > 2 * separation) visit(start, end, separation);
+      if (between > 2 * separation) visit(start, end, (1 + guard) * separation);
       between += (end - start).norm();
     };
     if (extension.end == 0) {

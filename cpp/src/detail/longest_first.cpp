@@ -293,10 +293,12 @@ class LineFiller::Implementation {
       const auto& chord = chords_[outside];
       return is_stopped(chord) ? occupancy_.stop_reason(chord.triangle(), chord.coordinate) : StopReason::near_itself;
     };
-    return {candidates_.chords_of(stretch),
-            whole.is_closed(),
-            {stretch.first == whole.first ? whole.ends[0] : reason_at(stretch.first - 1),
-             stretch.last == whole.stretch().last ? whole.ends[1] : reason_at(stretch.last)}};
+    const bool is_cut[] = {stretch.first != whole.first, stretch.last != whole.stretch().last};
+    return {
+        candidates_.chords_of(stretch),
+        whole.is_closed(),
+        {is_cut[0] ? reason_at(stretch.first - 1) : whole.ends[0], is_cut[1] ? reason_at(stretch.last) : whole.ends[1]},
+        {is_cut[0], is_cut[1]}};
   }
 
   const Sheet& sheet_;

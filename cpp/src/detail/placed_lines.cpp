@@ -42,7 +42,7 @@ ChordsAhead chords_ahead(const Sheet& sheet, const PlacedLine& line) {
   ChordsAhead ahead;
   for (const int end : {0, 1}) {
     const auto reason = line.stop_reasons[end];
-    if (reason == StopReason::near_other || reason == StopReason::near_itself) {
+    if (reason == StopReason::near_other || (reason == StopReason::near_itself && line.is_cut[end])) {
       ahead[end] = chord_ahead(sheet, outwards[end]);
     }
   }
@@ -63,14 +63,14 @@ double length_of(const Sheet& sheet, const PlacedLine& line) {
 }
 
 void PlacedLines::add(const PlacedLine& line) {
-  lines_.push_back(
-      {std::ssize(chords_), static_cast<std::int32_t>(line.chords.size()), line.is_closed, line.stop_reasons});
+  const auto count = static_cast<std::int32_t>(line.chords.size());
+  lines_.push_back({std::ssize(chords_), count, line.is_closed, line.stop_reasons, line.is_cut});
   chords_.insert(chords_.end(), line.chords.begin(), line.chords.end());
 }
 
 PlacedLine PlacedLines::operator[](std::size_t line) const {
-  const auto& [first, count, is_closed, stop_reasons] = lines_[line];
-  return {std::span(chords_).subspan(first, count), is_closed, stop_reasons};
+  const auto& [first, count, is_closed, stop_reasons, is_cut] = lines_[line];
+  return {std::span(chords_).subspan(first, count), is_closed, stop_reasons, is_cut};
 }
 
 void PlacedLines::write(const Sheet& sheet, Placement& placement) const {

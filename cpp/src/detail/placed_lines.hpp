@@ -18,10 +18,11 @@ struct PlacedLine {
   std::span<const Chord> chords;
   bool is_closed = false;
   std::array<StopReason, 2> stop_reasons{};
+  std::array<bool, 2> is_cut{};  ///< at an end the trajectory goes on, through a chord that was free
 };
 
 /// At the first and the last point of a line, the chord that it does not take because another line or a part of its own
-/// is near; it runs away from the line.
+/// is near; it runs away from the line. None where a trajectory itself ended because it came back to a triangle.
 ChordsAhead chords_ahead(const Sheet& sheet, const PlacedLine& line);
 
 /// Makes room for so many points.
@@ -49,6 +50,7 @@ class PlacedLines {
     std::int32_t count;  // of chords
     bool is_closed;
     std::array<StopReason, 2> stop_reasons;
+    std::array<bool, 2> is_cut;
   };
 
   void write(const Sheet& sheet, const PlacedLine& line, Placement& placement) const;

@@ -19,17 +19,17 @@ inline Lanes all(float value) {
 }
 /// By halves: one after the other they would wait for each other.
 inline float least_of(const Lanes& lanes) {
-  using Quarter = float __attribute__((vector_size(4 * sizeof(float))));
-  Quarter four;
+  using Four = float __attribute__((vector_size(4 * sizeof(float))));
+  Four four;
   __builtin_memcpy(&four, &lanes, sizeof four);
   for (int i = 4; i < floats; i += 4) {
-    Quarter next;
+    Four next;
     __builtin_memcpy(&next, reinterpret_cast<const float*>(&lanes) + i, sizeof next);
     four = four < next ? four : next;
   }
-  const Quarter halves = __builtin_shufflevector(four, four, 2, 3, 0, 1);
+  const Four halves = __builtin_shufflevector(four, four, 2, 3, 0, 1);
   four = four < halves ? four : halves;
-  const Quarter pairs = __builtin_shufflevector(four, four, 1, 0, 3, 2);
+  const Four pairs = __builtin_shufflevector(four, four, 1, 0, 3, 2);
   four = four < pairs ? four : pairs;
   return four[0];
 }
