@@ -95,7 +95,7 @@ def place_streamlines(
     seed_distance_factor : float
         c_seed of method "distance", at least 1.
     seed_clearance : float
-        In [1, 2]: a streamline is placed only where some point of it is this many d_sep from the others. Above 1 (1.16
+        In [1, 2]: a streamline is placed only where some point of it is this many d_sep from the others. Above 1 (1.155
         is good) they are fewer and longer, still d_sep apart, and leave small gaps. Those of method "longest" that are
         at least 9 d_sep long need it not, unless `test_distance` is below 1.
     test_distance : float

@@ -43,7 +43,7 @@ struct PlacementOptions {
   int seed_count = 32;                ///< n_seeds of the paper's methods, candidates a step, in [1, 10^6]
   double seed_distance_factor = 1.3;  ///< c_seed, >= 1, of method `distance`
   /// Streamlines are placed only through triangles where they are somewhere this many d_sep from all others, in [1, 2]:
-  /// above 1 (1.16 is good) fewer and longer ones, still d_sep apart, leave small gaps. Those of method `longest` that
+  /// above 1 (1.155 is good) fewer and longer ones, still d_sep apart, leave small gaps. Those of method `longest` that
   /// are at least 9 d_sep long need it not, unless `test_distance` is below 1. Exact occupancy only.
   double seed_clearance = 1;
   /// Streamlines run on until they are this many d_sep from others, in (0, 1]: below 1 they grow longer, but only this
