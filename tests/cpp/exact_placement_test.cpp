@@ -313,6 +313,32 @@ TEST_CASE("exact placement: where candidates run on beside one another, most are
   check_segment_separation(placement, 0.1);
 }
 
+TEST_CASE("exact placement: where d_sep varies, a streamline keeps from itself what d_sep is where it was begun") {
+  const auto mesh = jittered_grid(24, 18).mesh();
+  const auto field = field_of(mesh, [&](const Vector& c, const Vector&) {
+    const Vector r = c - Vector(12.3, 9.2, 0);
+    return Vector(-r.y() + 0.02 * r.x(), r.x() + 0.02 * r.y(), 0);
+  });
+  auto options = with(1);
+  options.separation_distances = separations_over(mesh, 0.3, 0.8);
+  const auto placement = checked(mesh, field, options);
+  const auto placed = as_placed(placement);
+  const auto segments = segments_of(placement);
+  int count = 0;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const auto line = segments[i].line;
+    const auto first = placed.offsets[line] - static_cast<std::int64_t>(line);
+    const double separation = options.separation_distances[placed.segment_triangles[first]];
+    for (std::size_t j = i; j-- > 0 && segments[j].line == line;) {
+      if (segments[i].arc - segments[j].arc_end <= 2 * separation * (1 + 1e-9)) continue;
+      if (segments[i].is_farther_than(segments[j], 2 * separation)) continue;
+      CHECK(segments[i].distance(segments[j]) >= separation * (1 - 1e-9));
+      ++count;
+    }
+  }
+  CHECK(count > 100);
+}
+
 TEST_CASE("exact placement: around what is smaller than d_sep no streamline comes to a triangle twice") {
   const auto mesh = jittered_grid(12, 9).mesh();
   for (const auto& hard : hard_fields) {
