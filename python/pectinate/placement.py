@@ -179,8 +179,8 @@ class Placement:
         (N, 3) float64, mm: all streamlines, one after the other. Each lies on an edge, but for ends of method
         "longest" that stop near others or themselves: those are where the others, or a part of their own, are d_sep
         away, in the midst of triangles (on edges where that is less than 1e-3 d_sep farther on, where the rest of the
-        triangle is longer than 64 d_sep, and where the part that they stopped for is none of the streamline any
-        more).
+        triangle is longer than 64 d_sep, and of those near themselves where they come back to the same triangle, or
+        where the part that they stopped for is none of the streamline any more).
     offsets
         (n + 1,) int64: streamline i owns points[offsets[i]:offsets[i + 1]].
     segment_triangles

@@ -79,7 +79,8 @@ struct PlacementOptions {
 /// [offsets[i], offsets[i + 1]) and the segments [offsets[i] - i, offsets[i + 1] - i - 1). Points lie on edges, but for
 /// ends of method `longest` that stop near others or themselves: those are where the others, or a part of their own,
 /// are d_sep away, in the midst of triangles (on edges where that is less than 1e-3 d_sep farther on, where the rest of
-/// the triangle is longer than 64 d_sep, and where the part that they stopped for is none of the streamline any more).
+/// the triangle is longer than 64 d_sep, and of those near themselves where they come back to the same triangle, or
+/// where the part that they stopped for is none of the streamline any more).
 struct Placement {
   std::vector<Vec3> points;
   std::vector<std::int64_t> offsets;            ///< streamline count + 1

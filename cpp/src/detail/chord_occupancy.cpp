@@ -24,7 +24,6 @@ constexpr float size_slack = 4e-7F, distance_slack = 4e-6F;
 /// Segments that deviate less than this, in separation distances, from a straight line are first looked at as one.
 constexpr double coarse_tolerance = 0.03;
 constexpr std::size_t most_joined = 8;
-
 /// Of the triangles that the search will visit, the records are fetched so many before.
 constexpr std::size_t visited_ahead = 4;
 
@@ -389,10 +388,9 @@ double ChordOccupancy::free_share(std::int32_t triangle, const IntervalSets& set
 /// Summed in the mesh's order, so that no bit depends on the axes.
 double ChordOccupancy::coverage() const {
   constexpr std::int32_t ahead = 16;
-  const auto count = sheet_.triangle_count();
   double free = 0;
-  for (std::int32_t t = 0; t < count; ++t) {
-    stopped_.prefetch(sheet_.ranks[std::min(t + ahead, count - 1)]);
+  for (std::int32_t t = 0, last = sheet_.triangle_count() - 1; t <= last; ++t) {
+    stopped_.prefetch(sheet_.ranks[std::min(t + ahead, last)]);
     const auto rank = sheet_.ranks[t];
     if (!stopped_.is_full(rank)) free += free_share(rank, stopped_) * mesh_.triangle_areas()[t];
   }

@@ -17,7 +17,7 @@ struct HeldLine {
   std::vector<Chord> chords;
   bool is_closed = false;
   std::array<StopReason, 2> stop_reasons{};
-  std::array<bool, 2> is_cut{};
+  std::array<bool, 2> is_cut{};  ///< as of the placed line
   double length = 0;
   std::int64_t rank = 0;  ///< how many lines were placed before
   /// The chords that would follow at its ends if no other line were near: only where one is.
