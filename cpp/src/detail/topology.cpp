@@ -27,62 +27,68 @@ struct LowSide {
   std::int32_t triangle() const { return static_cast<std::int32_t>(static_cast<std::uint32_t>(code) >> 3); }
   int side() const { return static_cast<int>(code >> 1 & 3); }
   bool runs_along() const { return code & 1; }  ///< from the lower end to the higher one
+  std::int32_t number() const { return 4 * triangle() + side(); }
   bool operator<(const LowSide& other) const { return code < other.code; }
 };
 
-/// By insertion while they are few, as they are on any surface; all the way down and without branches, because wrong
-/// guesses would cost more.
-void sort_sides(std::span<LowSide> sides) {
-  constexpr std::size_t few = 16;
-  if (sides.size() > few) return std::sort(sides.begin(), sides.end());
-  for (std::size_t i = 1; i < sides.size(); ++i) {
-    auto least = sides[i].code;
-    for (auto j = i; j > 0; --j) {
-      const auto other = sides[j - 1].code;
-      const auto difference =
-          (least ^ other) & -static_cast<std::uint64_t>(other < least);  // if they are to be swapped
-      sides[j].code = other ^ difference;
-      least ^= difference;
-    }
-    sides[0].code = least;
+/// Puts two in order. Without a branch, because wrong guesses would cost more.
+inline void sort_two(LowSide& a, LowSide& b) {
+  const auto difference = static_cast<std::int64_t>(b.code - a.code);  // codes leave the sign's bit free
+  const auto surplus = static_cast<std::uint64_t>(difference & difference >> 63);
+  a.code += surplus;
+  b.code -= surplus;
+}
+
+/// By insertion, all the way down.
+inline void sort_few(LowSide* sides, std::size_t count) {
+  for (std::size_t i = 1; i < count; ++i) {
+    for (auto j = i; j > 0; --j) sort_two(sides[j - 1], sides[j]);
   }
 }
 
-/// The sides at each vertex that is their lower end.
+/// The sides at each vertex that is their lower end: those that leave it, then those that arrive there.
 class SidesByEnds {
  public:
-  SidesByEnds(const std::vector<Triangle>& triangles, std::size_t vertex_count) : ends_(vertex_count + 1, 0) {
+  SidesByEnds(const std::vector<Triangle>& triangles, std::size_t vertex_count) : ends_(2 * vertex_count + 1, 0) {
     // A large page too many is gone again soon, and costs less than the many small ones of its part that is used.
     sides_.reserve(fill_large_pages<LowSide>(3 * triangles.size()));
     sides_.resize(3 * triangles.size());
-    // Filling moves each vertex's end from where its sides begin to where they end.
+    // Filling moves each bucket's end from where its sides begin to where they end.
     for (const auto& [a, b, c] : triangles) {
-      ends_[std::min(a, b) + 1] += 1;
-      ends_[std::min(b, c) + 1] += 1;
-      ends_[std::min(c, a) + 1] += 1;
+      ends_[Ends(a, b).bucket + 1] += 1;
+      ends_[Ends(b, c).bucket + 1] += 1;
+      ends_[Ends(c, a).bucket + 1] += 1;
     }
     std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles.size()); ++t) {
       const auto& [a, b, c] = triangles[t];
-      add(a, b, t, 0);
-      add(b, c, t, 1);
-      add(c, a, t, 2);
+      add({a, b}, t, 0);
+      add({b, c}, t, 1);
+      add({c, a}, t, 2);
     }
   }
 
-  /// In ascending order. To be asked for all vertices in turn.
-  std::span<const LowSide> sorted_at(std::size_t vertex) {
-    const std::span<LowSide> sides{sides_.data() + (vertex == 0 ? 0 : ends_[vertex - 1]),
-                                   sides_.data() + ends_[vertex]};
-    sort_sides(sides);
-    return sides;
-  }
+  std::span<LowSide> leaving(std::size_t vertex) { return bucket(2 * vertex); }
+  std::span<LowSide> arriving(std::size_t vertex) { return bucket(2 * vertex + 1); }
 
  private:
-  void add(std::int32_t from, std::int32_t to, std::int32_t triangle, int side) {
-    const bool runs_along = from < to;
-    const auto low = runs_along ? from : to, high = runs_along ? to : from;
-    sides_[ends_[low]++] = {high, triangle, side, runs_along};
+  /// Which one is the lower is anyone's guess, so there is no branch.
+  struct Ends {
+    std::int32_t high, bucket;
+    bool run_along;
+    Ends(std::int32_t from, std::int32_t to) {
+      const auto difference = to - from, descends = difference >> 31;  // all bits or none
+      high = to - (difference & descends);
+      bucket = 2 * (from + (difference & descends)) - descends;
+      run_along = descends + 1;
+    }
+  };
+
+  void add(const Ends& ends, std::int32_t triangle, int side) {
+    sides_[ends_[ends.bucket]++] = {ends.high, triangle, side, ends.run_along};
+  }
+  std::span<LowSide> bucket(std::size_t i) {
+    return {sides_.data() + (i == 0 ? 0 : ends_[i - 1]), sides_.data() + ends_[i]};
   }
 
   std::vector<std::int32_t> ends_;
@@ -95,42 +101,112 @@ void join_sides(const A& a, const B& b, bool run_alike, Topology& topology) {
   topology.neighbours[b.triangle()][b.side()] = {a.triangle(), a.side(), run_alike};
 }
 
-/// Adds the edge that some sides are.
-void add_edge(std::int32_t low, std::span<const LowSide> sides, Topology& topology) {
-  const auto edge = static_cast<std::int32_t>(topology.edges.size());
-  topology.edges.push_back({low, sides[0].high_end()});
-  for (const auto& side : sides) topology.triangle_edges[side.triangle()][side.side()] = edge;
-  if (sides.size() <= 2) {
-    topology.edge_sides.push_back(4 * sides[0].triangle() + sides[0].side());
-    if (sides.size() == 2) {
-      join_sides(sides[0], sides[1], sides[0].runs_along() == sides[1].runs_along(), topology);
-    }
-    return;
+/// Makes edges of sides, from vertices to higher ones, in ascending order.
+class EdgeMaker {
+ public:
+  EdgeMaker(std::size_t triangle_count, std::size_t vertex_count) {
+    topology_.triangle_edges = roomy_vector<std::array<std::int32_t, 3>>(triangle_count, {});
+    topology_.neighbours = roomy_vector<std::array<PackedNeighbour, 3>>(triangle_count, {});
+    // Half the sides, those at borders and cuts once more: the rest may grow.
+    const auto likely_edges = 3 * triangle_count / 2 + vertex_count / 8;
+    topology_.edges = roomy_vector<std::array<std::int32_t, 2>>(likely_edges, {});
+    topology_.edge_sides = roomy_vector<std::int32_t>(likely_edges, 0);
   }
-  topology.edge_sides.push_back(~static_cast<std::int32_t>(topology.cut_edges.size()));
-  auto& cut = topology.cut_edges.emplace_back(CutEdge{edge, {}});
-  for (const auto& side : sides) cut.sides.push_back(4 * side.triangle() + side.side());
-}
+
+  /// All from one vertex. The sides that leave it and those that arrive lie behind each other in memory.
+  void add(std::int32_t low, std::span<LowSide> leaving, std::span<LowSide> arriving) {
+    make_room(leaving.size() + arriving.size());
+    if (leaving.size() == arriving.size() && add_pairs(low, leaving, arriving)) return;
+    const std::span<LowSide> sides{leaving.data(), arriving.data() + arriving.size()};
+    constexpr std::size_t few = 16;
+    sides.size() <= few ? sort_few(sides.data(), sides.size()) : std::sort(sides.begin(), sides.end());
+    for (std::size_t first = 0, last = 0; first < sides.size(); first = last) {
+      while (last < sides.size() && sides[last].high_end() == sides[first].high_end()) ++last;
+      add_edge(low, sides.subspan(first, last - first));
+    }
+  }
+
+  Topology take() && {
+    topology_.edges.resize(count_);
+    topology_.edge_sides.resize(count_);
+    return std::move(topology_);
+  }
+
+ private:
+  void make_room(std::size_t count) {
+    if (count_ + count <= topology_.edges.size()) return;
+    topology_.edges.resize(2 * (count_ + count));
+    topology_.edge_sides.resize(2 * (count_ + count));
+  }
+
+  /// Where every edge has one side that leaves and one that arrives, as at nearly all vertices of most surfaces.
+  bool add_pairs(std::int32_t low, std::span<const LowSide> leaving, std::span<const LowSide> arriving) {
+    switch (leaving.size()) {
+      case 0: return true;
+      case 1: return add_pairs<1>(low, leaving.data(), arriving.data());
+      case 2: return add_pairs<2>(low, leaving.data(), arriving.data());
+      case 3: return add_pairs<3>(low, leaving.data(), arriving.data());
+      case 4: return add_pairs<4>(low, leaving.data(), arriving.data());
+      case 5: return add_pairs<5>(low, leaving.data(), arriving.data());
+      case 6: return add_pairs<6>(low, leaving.data(), arriving.data());
+      default: return false;
+    }
+  }
+  template <int count>
+  bool add_pairs(std::int32_t low, const LowSide* leaving, const LowSide* arriving) {
+    std::array<LowSide, count> here, there;
+    std::copy_n(leaving, count, here.begin());
+    std::copy_n(arriving, count, there.begin());
+    sort_few(here.data(), count);
+    sort_few(there.data(), count);
+    bool are_pairs = true;
+    for (int i = 0; i < count; ++i) are_pairs &= here[i].high_end() == there[i].high_end();
+    for (int i = 1; i < count; ++i) are_pairs &= here[i].high_end() != here[i - 1].high_end();
+    if (!are_pairs) return false;
+    const auto first = static_cast<std::int32_t>(count_);
+    count_ += count;
+    for (int i = 0; i < count; ++i) {
+      const auto& a = here[i];
+      const auto& b = there[i];
+      topology_.edges[first + i] = {low, a.high_end()};
+      topology_.edge_sides[first + i] = std::min(a.number(), b.number());
+      topology_.triangle_edges[a.triangle()][a.side()] = first + i;
+      topology_.triangle_edges[b.triangle()][b.side()] = first + i;
+      join_sides(a, b, false, topology_);
+    }
+    return true;
+  }
+
+  /// The edge that some sides are.
+  void add_edge(std::int32_t low, std::span<const LowSide> sides) {
+    const auto edge = static_cast<std::int32_t>(count_++);
+    topology_.edges[edge] = {low, sides[0].high_end()};
+    for (const auto& side : sides) topology_.triangle_edges[side.triangle()][side.side()] = edge;
+    if (sides.size() <= 2) {
+      topology_.edge_sides[edge] = sides[0].number();
+      if (sides.size() == 2) {
+        join_sides(sides[0], sides[1], sides[0].runs_along() == sides[1].runs_along(), topology_);
+      }
+      return;
+    }
+    topology_.edge_sides[edge] = ~static_cast<std::int32_t>(topology_.cut_edges.size());
+    auto& cut = topology_.cut_edges.emplace_back(CutEdge{edge, {}});
+    for (const auto& side : sides) cut.sides.push_back(side.number());
+  }
+
+  Topology topology_;
+  std::size_t count_ = 0;  // of edges
+};
 
 }  // namespace
 
 Topology join_triangles(const TriangleSoup& soup) {
   SidesByEnds sides(soup.triangles, soup.vertices.size());
-  Topology topology;
-  topology.triangle_edges = roomy_vector<std::array<std::int32_t, 3>>(soup.triangles.size(), {});
-  topology.neighbours = roomy_vector<std::array<PackedNeighbour, 3>>(soup.triangles.size(), {});
-  // Half the sides, those at borders and cuts once more: the rest may grow.
-  const auto likely_edges = 3 * soup.triangles.size() / 2 + soup.vertices.size() / 8;
-  topology.edges = roomy_vector<std::array<std::int32_t, 2>>(likely_edges);
-  topology.edge_sides = roomy_vector<std::int32_t>(likely_edges);
+  EdgeMaker edges(soup.triangles.size(), soup.vertices.size());
   for (std::int32_t low = 0; low < static_cast<std::int32_t>(soup.vertices.size()); ++low) {
-    const auto here = sides.sorted_at(low);
-    for (std::size_t first = 0, last = 0; first < here.size(); first = last) {
-      while (last < here.size() && here[last].high_end() == here[first].high_end()) ++last;
-      add_edge(low, here.subspan(first, last - first), topology);
-    }
+    edges.add(low, sides.leaving(low), sides.arriving(low));
   }
-  return topology;
+  return std::move(edges).take();
 }
 
 std::vector<std::int32_t> likely_repetitions(const Topology& topology) {
