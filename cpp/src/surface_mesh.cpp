@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "detail/boundary_loops.hpp"
+#include "detail/large_array.hpp"
 #include "detail/orient.hpp"
 #include "detail/topology.hpp"
 #include "detail/triangle_soup.hpp"
@@ -68,16 +69,33 @@ void count_genus(const std::vector<std::int32_t>& vertex_counts, const std::vect
   }
 }
 
+/// Of what a mesh holds; all at once, because memory costs less so.
+struct Rooms {
+  detail::TriangleSoup soup;
+  detail::Topology topology;
+  std::vector<std::int32_t> components;
+
+  Rooms(std::size_t vertex_count, std::size_t triangle_count) {
+    const auto edge_count = detail::likely_edge_count(vertex_count, triangle_count);
+    detail::back_together(
+        {detail::make_room(soup.vertices, vertex_count), detail::make_room(soup.triangles, triangle_count),
+         detail::make_room(soup.areas, triangle_count), detail::make_room(topology.edges, edge_count),
+         detail::make_room(topology.triangle_edges, triangle_count), detail::make_room(topology.edge_sides, edge_count),
+         detail::make_room(topology.neighbours, triangle_count), detail::make_room(components, triangle_count)});
+  }
+};
+
 }  // namespace
 
 SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangle> triangles)
     : input_vertex_count_(vertices.size()), input_triangle_count_(triangles.size()) {
-  auto soup = detail::clean_triangle_soup(vertices, triangles);
-  auto topology = detail::join_triangles(soup);
+  Rooms rooms(vertices.size(), triangles.size());
+  auto soup = detail::clean_triangle_soup(vertices, triangles, std::move(rooms.soup));
+  auto topology = detail::join_triangles(soup, std::move(rooms.topology));
   const auto repetitions = detail::find_repetitions(soup, detail::likely_repetitions(topology));
   if (!repetitions.empty()) {
     soup = detail::drop_repetitions(std::move(soup), repetitions);
-    topology = detail::join_triangles(soup);
+    topology = detail::join_triangles(soup, std::move(topology));
   }
   for (const auto& cut : topology.cut_edges) {
     const auto [a, b] = topology.edges[cut.edge];
@@ -97,6 +115,7 @@ SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangl
   input_triangle_ = std::move(split.soup.input_triangle);
   repairs_ = std::move(split.soup.repairs);
   copied_vertices_ = std::move(split.copied_vertices);
+  triangle_components_ = std::move(rooms.components);
   orient(topology);
   edges_ = std::move(topology.edges);
   triangle_edges_ = std::move(topology.triangle_edges);
@@ -106,7 +125,7 @@ SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangl
 }
 
 void SurfaceMesh::orient(detail::Topology& topology) {
-  auto orientation = detail::find_orientation(topology.neighbours);
+  auto orientation = detail::find_orientation(topology.neighbours, std::move(triangle_components_));
   auto& reversed = orientation.to_reverse;
   for (const auto t : reversed) detail::reverse_triangle(t, triangles_, topology);
   triangle_components_ = std::move(orientation.triangle_components);

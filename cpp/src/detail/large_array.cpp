@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "detail/large_array.hpp"
 
+#include <algorithm>
+
 #ifdef __linux__
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstdint>
 #endif
 
@@ -12,6 +15,14 @@ namespace pectinate::detail {
 namespace {
 
 #ifdef __linux__
+constexpr std::size_t large_page = std::size_t{1} << 21;
+/// The system's numbers of MADV_POPULATE_WRITE and MADV_COLLAPSE, which older headers lack.
+constexpr int populate = 23, collapse = 25;
+
+std::size_t small_page() {
+  return static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
+}
+
 /// Gives the system advice about what whole pages of such a size lie in this memory. What it answers makes no
 /// difference but in speed.
 void advise(void* memory, std::size_t size, std::size_t page, int advice) {
@@ -19,20 +30,50 @@ void advise(void* memory, std::size_t size, std::size_t page, int advice) {
   if (size < before + page) return;
   (void)madvise(static_cast<char*>(memory) + before, (size - before) / page * page, advice);
 }
+
+/// Is next to nothing of a large page there yet?
+bool is_untouched(void* page) {
+  std::array<unsigned char, 512> is_there;
+  if (large_page / small_page() > is_there.size() || mincore(page, large_page, is_there.data()) != 0) return false;
+  return std::ranges::count_if(is_there, [](auto flags) { return flags & 1; }) < 64;
+}
+
+/// Backs with large pages what was only touched where the allocator keeps its books, for which the system has begun
+/// with small ones.
+void make_large_pages(std::byte* memory, std::size_t size) {
+  for (auto i = -reinterpret_cast<std::uintptr_t>(memory) % large_page; i + large_page <= size; i += large_page) {
+    if (is_untouched(memory + i)) (void)madvise(memory + i, large_page, collapse);
+  }
+}
 #endif
 
 }  // namespace
 
 void prefer_large_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t size) {
 #ifdef __linux__
-  advise(memory, size, std::size_t{1} << 21, MADV_HUGEPAGE);
+  advise(memory, size, large_page, MADV_HUGEPAGE);
 #endif
 }
 
 void back_with_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t size) {
-#if defined(__linux__) && defined(MADV_POPULATE_WRITE)
-  advise(memory, size, static_cast<std::size_t>(sysconf(_SC_PAGESIZE)), MADV_POPULATE_WRITE);
+#ifdef __linux__
+  advise(memory, size, small_page(), populate);
 #endif
+}
+
+void back_together(std::vector<std::span<std::byte>> rooms) {
+  constexpr std::ptrdiff_t greatest_gap = 8192;  // of what the system and the allocator put between two
+  std::ranges::sort(rooms, {}, [](const auto& room) { return room.data(); });
+  for (std::size_t first = 0, last = 0; first < rooms.size(); first = last) {
+    const auto end_of = [&](std::size_t i) { return rooms[i].data() + rooms[i].size(); };
+    for (++last; last < rooms.size() && rooms[last].data() - end_of(last - 1) <= greatest_gap;) ++last;
+    const std::size_t size = end_of(last - 1) - rooms[first].data();
+#ifdef __linux__
+    prefer_large_pages(rooms[first].data(), size);
+    make_large_pages(rooms[first].data(), size);
+#endif
+    back_with_pages(rooms[first].data(), size);
+  }
 }
 
 }  // namespace pectinate::detail

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <new>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -33,6 +34,17 @@ std::vector<T> roomy_vector(std::size_t count, const T& value) {
   result.resize(count, value);
   return result;
 }
+
+/// The room of an empty vector for so many elements, all or nearly all of which there will be.
+template <class T>
+std::span<std::byte> make_room(std::vector<T>& vector, std::size_t count) {
+  vector.reserve(count);
+  return {reinterpret_cast<std::byte*>(vector.data()), count * sizeof(T)};
+}
+
+/// Backs rooms with pages at once. Those that lie side by side, as the system likes to give them out, fill large pages
+/// together that none of them would fill alone.
+void back_together(std::vector<std::span<std::byte>> rooms);
 
 /// Memory of large arrays that are walked over at random: in large pages, where the system has them, it costs fewer
 /// page faults and less translation of addresses.

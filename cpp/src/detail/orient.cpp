@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "detail/large_array.hpp"
+#include "detail/triangle_measures.hpp"
 #include "detail/vec.hpp"
 
 namespace pectinate::detail {
@@ -16,10 +17,12 @@ constexpr double least_relative_volume = 1e-3;
 /// Components as they are found. A triangle's state is twice its component, and one more where it is to be reversed.
 class Flood {
  public:
-  explicit Flood(const Neighbours& neighbours)
+  Flood(const Neighbours& neighbours, std::vector<std::int32_t> room)
       : neighbours_(neighbours),
-        states_(roomy_vector<std::int32_t>(neighbours.size(), -1)),
-        reached_(roomy_vector<std::int32_t>(neighbours.size() + 1, 0)) {}
+        states_(std::move(room)),
+        reached_(roomy_vector<std::int32_t>(neighbours.size() + 1, 0)) {
+    states_.assign(neighbours.size(), -1);
+  }
 
   bool has_reached(std::int32_t t) const { return states_[t] >= 0; }
 
@@ -62,10 +65,10 @@ class Flood {
 
 }  // namespace
 
-Orientation find_orientation(const Neighbours& neighbours) {
+Orientation find_orientation(const Neighbours& neighbours, std::vector<std::int32_t> room) {
   const auto count = static_cast<std::int32_t>(neighbours.size());
   Orientation result;
-  Flood flood(neighbours);
+  Flood flood(neighbours, std::move(room));
   for (std::int32_t start = 0; start < count; ++start) {
     if (flood.has_reached(start)) continue;
     const auto component = static_cast<std::int32_t>(result.orientable.size());
@@ -91,14 +94,8 @@ std::vector<bool> points_inwards(const std::vector<Vec3>& vertices, const std::v
   }
   for (std::size_t first = 0, last = 0; first < triangles.size(); first = last) {
     const auto component = triangle_components[first];
-    const Vector& from = origin[component];
-    double sum = 0;  // of a run of triangles
-    for (; last < triangles.size() && triangle_components[last] == component; ++last) {
-      const auto& [a, b, c] = triangles[last];
-      const Vector ab = vector(vertices[b]) - vector(vertices[a]), ac = vector(vertices[c]) - vector(vertices[a]);
-      sum += (vector(vertices[a]) - from).dot(ab.cross(ac));
-    }
-    volume[component] += sum;
+    while (last < triangles.size() && triangle_components[last] == component) ++last;
+    volume[component] += measure_volume(vertices, {&triangles[first], last - first}, vec3(origin[component]));
   }
   for (const auto& loop : loops) {
     const Vector& from = origin[loop.component];

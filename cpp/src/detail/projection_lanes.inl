@@ -2,7 +2,7 @@
 // What vector_projection.cpp compiles once for each kind of processor. Quotients and square roots are most of the work;
 // lanes take several at once.
 
-#include "detail/lane_vectors.inl"
+#include "detail/lane_triangles.inl"
 
 /// Lines in the planes of triangles, whatever the input is like.
 struct LaneDirections {
@@ -12,14 +12,9 @@ struct LaneDirections {
   Mask is_finite;
 };
 
-struct LaneTriangles {
-  LaneVector a, b, c;  // corners
-  Lanes areas;
-};
-
-inline LaneDirections project(const LaneVector& input, const LaneTriangles& triangles) {
+inline LaneDirections project(const LaneVector& input, const LaneTriangles& triangles, const Lanes& areas) {
   const LaneVector ab = triangles.b - triangles.a, bc = triangles.c - triangles.b, ca = triangles.a - triangles.c;
-  const LaneVector normal = cross(ab, triangles.c - triangles.a) / (2 * triangles.areas);
+  const LaneVector normal = cross(ab, triangles.c - triangles.a) / (2 * areas);
   LaneDirections result;
   result.is_finite = (input.x - input.x == 0) & (input.y - input.y == 0) & (input.z - input.z == 0);
   result.scale = greatest(greatest(magnitude(input.x), magnitude(input.y)), magnitude(input.z));
@@ -49,16 +44,10 @@ inline PlanarDirections project_all(const SurfaceMesh& mesh, std::span<const Vec
   all.out_of_plane_angles = roomy_vector<double>(count);
   for (std::size_t first = 0; first < count; first += doubles) {
     const auto triangle = [&](int lane) { return std::min(first + lane, count - 1); };
-    const auto gather = [&](const auto& vector_of) -> LaneVector {
-      const auto coordinate = [&](int k) { return lanes([&](int lane) { return vector_of(triangle(lane))[k]; }); };
-      return {coordinate(0), coordinate(1), coordinate(2)};
-    };
-    const auto corners = [&](int k) {
-      return gather([&](std::size_t t) -> const Vec3& { return mesh.vertices()[mesh.triangles()[t][k]]; });
-    };
     const auto result = project(
-        gather([&](std::size_t t) -> const Vec3& { return vectors[mesh.input_triangle()[t]]; }),
-        {corners(0), corners(1), corners(2), lanes([&](int lane) { return mesh.triangle_areas()[triangle(lane)]; })});
+        gather([&](int lane) -> const Vec3& { return vectors[mesh.input_triangle()[triangle(lane)]]; }),
+        gather_triangles(mesh.vertices().data(), mesh.triangles(), first),
+        lanes([&](int lane) { return mesh.triangle_areas()[triangle(lane)]; }));
     for (int lane = 0; lane < doubles && first + lane < count; ++lane) {
       const auto status = !result.is_finite[lane]             ? DirectionStatus::non_finite
                           : result.scale[lane] == 0           ? DirectionStatus::zero

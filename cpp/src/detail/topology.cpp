@@ -104,13 +104,13 @@ void join_sides(const A& a, const B& b, bool run_alike, Topology& topology) {
 /// Makes edges of sides, from vertices to higher ones, in ascending order.
 class EdgeMaker {
  public:
-  EdgeMaker(std::size_t triangle_count, std::size_t vertex_count) {
-    topology_.triangle_edges = roomy_vector<std::array<std::int32_t, 3>>(triangle_count, {});
-    topology_.neighbours = roomy_vector<std::array<PackedNeighbour, 3>>(triangle_count, {});
-    // Half the sides, those at borders and cuts once more: the rest may grow.
-    const auto likely_edges = 3 * triangle_count / 2 + vertex_count / 8;
-    topology_.edges = roomy_vector<std::array<std::int32_t, 2>>(likely_edges, {});
-    topology_.edge_sides = roomy_vector<std::int32_t>(likely_edges, 0);
+  EdgeMaker(const TriangleSoup& soup, Topology room) : topology_(std::move(room)) {
+    topology_.triangle_edges.assign(soup.triangles.size(), {});
+    topology_.neighbours.assign(soup.triangles.size(), {});
+    const auto likely_edges = likely_edge_count(soup.vertices.size(), soup.triangles.size());
+    topology_.edges.resize(likely_edges);
+    topology_.edge_sides.resize(likely_edges);
+    topology_.cut_edges.clear();
   }
 
   /// All from one vertex. The sides that leave it and those that arrive lie behind each other in memory.
@@ -200,9 +200,9 @@ class EdgeMaker {
 
 }  // namespace
 
-Topology join_triangles(const TriangleSoup& soup) {
+Topology join_triangles(const TriangleSoup& soup, Topology room) {
   SidesByEnds sides(soup.triangles, soup.vertices.size());
-  EdgeMaker edges(soup.triangles.size(), soup.vertices.size());
+  EdgeMaker edges(soup, std::move(room));
   for (std::int32_t low = 0; low < static_cast<std::int32_t>(soup.vertices.size()); ++low) {
     edges.add(low, sides.leaving(low), sides.arriving(low));
   }

@@ -25,8 +25,13 @@ struct Topology {
   std::vector<std::array<PackedNeighbour, 3>> neighbours;
 };
 
-/// Joins the sides of every edge that has two triangles. Edges with more are cut open.
-Topology join_triangles(const TriangleSoup& soup);
+/// How many edges there are, at most, on nearly every surface: half the sides, those at borders and cuts once more.
+inline std::size_t likely_edge_count(std::size_t vertex_count, std::size_t triangle_count) {
+  return 3 * triangle_count / 2 + vertex_count / 8;
+}
+
+/// Joins the sides of every edge that has two triangles. Edges with more are cut open. Uses another topology's room.
+Topology join_triangles(const TriangleSoup& soup, Topology room = {});
 
 /// Every triangle that may have the same corners as another, in ascending order: such ones share all three edges.
 std::vector<std::int32_t> likely_repetitions(const Topology& topology);

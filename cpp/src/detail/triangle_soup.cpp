@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "detail/triangle_soup.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,15 +8,11 @@
 #include <string>
 
 #include "detail/buckets.hpp"
-#include "detail/large_array.hpp"
-#include "detail/vec.hpp"
+#include "detail/triangle_measures.hpp"
 #include "pectinate/errors.hpp"
 
 namespace pectinate::detail {
 namespace {
-
-/// Below this height over the longest side a triangle has no usable plane in double precision.
-constexpr double least_relative_height = 1e-8;
 
 bool is_finite(const Vec3& v) {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
@@ -30,23 +25,16 @@ void check_sizes(std::size_t vertex_count, std::size_t triangle_count) {
   }
 }
 
-void check_indices(const Triangle& triangle, std::size_t t, std::size_t vertex_count) {
-  for (const auto v : triangle) {
-    if (v >= 0 && static_cast<std::size_t>(v) < vertex_count) continue;
-    throw InvalidMesh("triangle " + std::to_string(t) + " refers to vertex " + std::to_string(v) +
-                      ", but vertices are numbered from 0 to " + std::to_string(vertex_count) +
-                      " - 1; correct the index or shift it to start at 0");
-  }
-}
-
-/// NaN where the triangle is degenerate, which it also is where a corner is not finite or is repeated.
-double measure_area(const Triangle& t, std::span<const Vec3> vertices) {
-  const Vector a = vector(vertices[t[1]]) - vector(vertices[t[0]]);
-  const Vector b = vector(vertices[t[2]]) - vector(vertices[t[0]]);
-  const double longest = std::max(std::max(a.squaredNorm(), b.squaredNorm()), (b - a).squaredNorm());
-  const double twice_area = a.cross(b).norm();
-  const bool is_usable = twice_area > least_relative_height * longest && std::isfinite(twice_area);
-  return is_usable ? twice_area / 2 : std::numeric_limits<double>::quiet_NaN();
+void check_indices(std::span<const Triangle> triangles, std::size_t vertex_count) {
+  const auto is_wrong = [&](std::int32_t v) { return static_cast<std::uint32_t>(v) >= vertex_count; };
+  bool are_wrong = false;  // told without a branch for each, so that many are looked at together
+  for (const auto& [a, b, c] : triangles) are_wrong |= is_wrong(a) | is_wrong(b) | is_wrong(c);
+  if (!are_wrong) return;
+  const auto wrong = std::ranges::find_if(triangles, [&](const auto& t) { return std::ranges::any_of(t, is_wrong); });
+  throw InvalidMesh("triangle " + std::to_string(wrong - triangles.begin()) + " refers to vertex " +
+                    std::to_string(*std::ranges::find_if(*wrong, is_wrong)) +
+                    ", but vertices are numbered from 0 to " + std::to_string(vertex_count) +
+                    " - 1; correct the index or shift it to start at 0");
 }
 
 /// Rows without some of them, which are given in ascending order.
@@ -74,16 +62,13 @@ TriangleSoup without_triangles(TriangleSoup soup, const std::vector<std::int32_t
 }
 
 /// The valid triangles, of the input's vertices.
-TriangleSoup select_triangles(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
-  TriangleSoup soup;
-  soup.triangles = roomy_vector<Triangle>(triangles.size());
+TriangleSoup select_triangles(std::span<const Vec3> vertices, std::span<const Triangle> triangles, TriangleSoup soup) {
+  check_indices(triangles, vertices.size());
   soup.triangles.assign(triangles.begin(), triangles.end());
-  soup.areas = roomy_vector<double>(triangles.size());
+  measure_areas(vertices, triangles, soup.areas);
   std::vector<std::int32_t> dropped;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    check_indices(triangles[t], t, vertices.size());
-    soup.areas.push_back(measure_area(triangles[t], vertices));
-    if (std::isnan(soup.areas.back())) dropped.push_back(static_cast<std::int32_t>(t));
+    if (std::isnan(soup.areas[t])) dropped.push_back(static_cast<std::int32_t>(t));
   }
   for (const auto t : dropped) {
     const auto& corners = triangles[t];
@@ -98,7 +83,6 @@ TriangleSoup with_used_vertices(TriangleSoup soup, std::span<const Vec3> vertice
   std::vector<std::uint8_t> is_used(vertices.size(), 0);
   for (const auto& [a, b, c] : soup.triangles) is_used[a] = is_used[b] = is_used[c] = 1;
   if (std::ranges::find(is_used, 0) == is_used.end()) {
-    soup.vertices = roomy_vector<Vec3>(vertices.size());
     soup.vertices.assign(vertices.begin(), vertices.end());
     return soup;
   }
@@ -156,9 +140,10 @@ std::vector<std::int32_t> find_repetitions(const TriangleSoup& soup, const std::
   return repeated;
 }
 
-TriangleSoup clean_triangle_soup(std::span<const Vec3> vertices, std::span<const Triangle> triangles) {
+TriangleSoup clean_triangle_soup(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
+                                 TriangleSoup room) {
   check_sizes(vertices.size(), triangles.size());
-  auto soup = select_triangles(vertices, triangles);
+  auto soup = select_triangles(vertices, triangles, std::move(room));
   if (soup.triangles.empty()) {
     throw InvalidMesh("none of the " + std::to_string(triangles.size()) +
                       " triangles is valid (finite, with an area); check the coordinates and the indices");
