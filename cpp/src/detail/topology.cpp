@@ -19,15 +19,13 @@ struct LowSide {
   std::uint64_t code;
 
   LowSide() = default;
-  LowSide(std::int32_t high_end, std::int32_t triangle, int side, bool runs_along)
-      : code(static_cast<std::uint64_t>(high_end) << 32 | static_cast<std::uint64_t>(triangle) << 3 |
-             static_cast<std::uint64_t>(side) << 1 | static_cast<std::uint64_t>(runs_along)) {}
+  LowSide(std::int32_t high_end, std::int32_t number, bool runs_along)
+      : code(static_cast<std::uint64_t>(high_end) << 32 | static_cast<std::uint64_t>(number) << 1 |
+             static_cast<std::uint64_t>(runs_along)) {}
 
   std::int32_t high_end() const { return static_cast<std::int32_t>(code >> 32); }
-  std::int32_t triangle() const { return static_cast<std::int32_t>(static_cast<std::uint32_t>(code) >> 3); }
-  int side() const { return static_cast<int>(code >> 1 & 3); }
+  std::int32_t number() const { return static_cast<std::int32_t>(static_cast<std::uint32_t>(code) >> 1); }
   bool runs_along() const { return code & 1; }  ///< from the lower end to the higher one
-  std::int32_t number() const { return 4 * triangle() + side(); }
   bool operator<(const LowSide& other) const { return code < other.code; }
 };
 
@@ -62,9 +60,9 @@ class SidesByEnds {
     std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
     for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles.size()); ++t) {
       const auto& [a, b, c] = triangles[t];
-      add({a, b}, t, 0);
-      add({b, c}, t, 1);
-      add({c, a}, t, 2);
+      add({a, b}, 4 * t);
+      add({b, c}, 4 * t + 1);
+      add({c, a}, 4 * t + 2);
     }
   }
 
@@ -84,8 +82,8 @@ class SidesByEnds {
     }
   };
 
-  void add(const Ends& ends, std::int32_t triangle, int side) {
-    sides_[ends_[ends.bucket]++] = {ends.high, triangle, side, ends.run_along};
+  void add(const Ends& ends, std::int32_t number) {
+    sides_[ends_[ends.bucket]++] = {ends.high, number, ends.run_along};
   }
   std::span<LowSide> bucket(std::size_t i) {
     return {sides_.data() + (i == 0 ? 0 : ends_[i - 1]), sides_.data() + ends_[i]};
@@ -95,10 +93,15 @@ class SidesByEnds {
   LargeArray<LowSide> sides_;
 };
 
-template <class A, class B>
-void join_sides(const A& a, const B& b, bool run_alike, Topology& topology) {
-  topology.neighbours[a.triangle()][a.side()] = {b.triangle(), b.side(), run_alike};
-  topology.neighbours[b.triangle()][b.side()] = {a.triangle(), a.side(), run_alike};
+/// What is stored for a side of such a number: rows lie one behind the other.
+template <class T>
+T& at_side(std::vector<std::array<T, 3>>& rows, std::int32_t number) {
+  return rows.data()->data()[number - (number >> 2)];
+}
+
+void join_sides(std::int32_t a, std::int32_t b, bool run_alike, Topology& topology) {
+  at_side(topology.neighbours, a) = {b, run_alike};
+  at_side(topology.neighbours, b) = {a, run_alike};
 }
 
 /// Makes edges of sides, from vertices to higher ones, in ascending order.
@@ -166,12 +169,11 @@ class EdgeMaker {
     const auto first = static_cast<std::int32_t>(count_);
     count_ += count;
     for (int i = 0; i < count; ++i) {
-      const auto& a = here[i];
-      const auto& b = there[i];
-      topology_.edges[first + i] = {low, a.high_end()};
-      topology_.edge_sides[first + i] = std::min(a.number(), b.number());
-      topology_.triangle_edges[a.triangle()][a.side()] = first + i;
-      topology_.triangle_edges[b.triangle()][b.side()] = first + i;
+      const auto a = here[i].number(), b = there[i].number();
+      topology_.edges[first + i] = {low, here[i].high_end()};
+      topology_.edge_sides[first + i] = std::min(a, b);
+      at_side(topology_.triangle_edges, a) = first + i;
+      at_side(topology_.triangle_edges, b) = first + i;
       join_sides(a, b, false, topology_);
     }
     return true;
@@ -181,11 +183,11 @@ class EdgeMaker {
   void add_edge(std::int32_t low, std::span<const LowSide> sides) {
     const auto edge = static_cast<std::int32_t>(count_++);
     topology_.edges[edge] = {low, sides[0].high_end()};
-    for (const auto& side : sides) topology_.triangle_edges[side.triangle()][side.side()] = edge;
+    for (const auto& side : sides) at_side(topology_.triangle_edges, side.number()) = edge;
     if (sides.size() <= 2) {
       topology_.edge_sides[edge] = sides[0].number();
       if (sides.size() == 2) {
-        join_sides(sides[0], sides[1], sides[0].runs_along() == sides[1].runs_along(), topology_);
+        join_sides(sides[0].number(), sides[1].number(), sides[0].runs_along() == sides[1].runs_along(), topology_);
       }
       return;
     }
@@ -255,7 +257,9 @@ Topology rejoin_slits(Topology topology, const TriangleSoup& soup) {
       }
     }
   }
-  for (const auto& [a, b] : slits) join_sides(a, b, a.leaves() == b.leaves(), topology);
+  for (const auto& [a, b] : slits) {
+    join_sides(4 * a.triangle() + a.side(), 4 * b.triangle() + b.side(), a.leaves() == b.leaves(), topology);
+  }
   return topology;
 }
 
