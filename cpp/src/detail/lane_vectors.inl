@@ -30,6 +30,11 @@ inline LaneVector cross(const LaneVector& a, const LaneVector& b) {
 inline Lanes all(double value) {
   return Lanes{} + value;
 }
+inline bool is_set_everywhere(const Mask& mask) {
+  auto common = mask[0];
+  for (int i = 1; i < doubles; ++i) common &= mask[i];
+  return common != 0;
+}
 inline Lanes magnitude(const Lanes& a) {
   return reinterpret_cast<Lanes>(reinterpret_cast<Mask>(a) & std::numeric_limits<std::int64_t>::max());
 }

@@ -2,6 +2,7 @@
 #include "detail/vector_projection.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -9,20 +10,15 @@
 #include "detail/vec.hpp"
 
 namespace pectinate::detail {
-namespace {
-
-/// Most made fields lie in the plane: there the angle is its tangent, to the last bit.
-double angle_of_tangent(double tangent) {
-  return tangent < 1e-9 ? tangent : std::atan(tangent);
-}
-
-}  // namespace
-
 #define PECTINATE_KERNEL "detail/projection_lanes.inl"
 #include "detail/kernel_variants.inl"
 
 PlanarDirections project_vectors(const SurfaceMesh& mesh, std::span<const Vec3> vectors) {
-  return PECTINATE_CALL_KERNEL(project_all, mesh, vectors);
+  PlanarDirections all;
+  const auto count = mesh.triangle_count();
+  back_together({make_room(all.units, count), make_room(all.status, count), make_room(all.out_of_plane_angles, count)});
+  PECTINATE_CALL_KERNEL(project_all, mesh, vectors, all);
+  return all;
 }
 
 }  // namespace pectinate::detail
