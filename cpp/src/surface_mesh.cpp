@@ -130,7 +130,8 @@ void SurfaceMesh::orient(detail::Topology& topology) {
   for (const auto t : reversed) detail::reverse_triangle(t, triangles_, topology);
   triangle_components_ = std::move(orientation.triangle_components);
   const auto find_loops = [&] {
-    return detail::find_boundary_loops(vertices_, triangles_, topology.neighbours, triangle_components_);
+    return detail::find_boundary_loops(vertices_, triangles_, topology.neighbours, topology.border_triangles,
+                                       triangle_components_);
   };
   loops_ = find_loops();
   components_ = measure_components(triangle_components_, orientation.orientable, areas_);

@@ -34,9 +34,10 @@ struct Link {
 };
 
 /// Triangle and side, in ascending order.
-std::vector<std::pair<std::int32_t, int>> find_border_sides(const Neighbours& neighbours) {
+std::vector<std::pair<std::int32_t, int>> find_border_sides(const Neighbours& neighbours,
+                                                            const std::vector<std::int32_t>& border_triangles) {
   std::vector<std::pair<std::int32_t, int>> sides;
-  for (std::int32_t t = 0; t < static_cast<std::int32_t>(neighbours.size()); ++t) {
+  for (const auto t : border_triangles) {
     for (int k = 0; k < 3; ++k) {
       if (!neighbours[t][k].exists()) sides.emplace_back(t, k);
     }
@@ -70,8 +71,9 @@ class Links {
 
 std::vector<BoundaryLoop> find_boundary_loops(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
                                               const Neighbours& neighbours,
+                                              const std::vector<std::int32_t>& border_triangles,
                                               const std::vector<std::int32_t>& triangle_components) {
-  const auto sides = find_border_sides(neighbours);
+  const auto sides = find_border_sides(neighbours, border_triangles);
   if (sides.empty()) return {};
   // One fan a vertex means two border ends at a border vertex, whatever the windings: the borders are cycles.
   Links links(vertices.size(), sides.size());

@@ -10,9 +10,10 @@
 namespace pectinate::detail {
 
 /// The closed borders of a surface in which every vertex has one fan, longest first. Each starts at its smallest
-/// vertex and runs as its first triangle's side does.
+/// vertex and runs as its first triangle's side does. Told are all triangles at a border, in ascending order.
 std::vector<BoundaryLoop> find_boundary_loops(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
                                               const Neighbours& neighbours,
+                                              const std::vector<std::int32_t>& border_triangles,
                                               const std::vector<std::int32_t>& triangle_components);
 
 }  // namespace pectinate::detail

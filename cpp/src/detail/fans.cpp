@@ -30,14 +30,18 @@ bool closes_within(std::int32_t count, const Neighbours& neighbours, const Corne
 }  // namespace
 
 bool has_one_fan_everywhere(const std::vector<Triangle>& triangles, const Neighbours& neighbours,
-                            std::size_t vertex_count) {
+                            const std::vector<std::int32_t>& border_triangles, std::size_t vertex_count) {
   auto at = roomy_vector<VertexCorners>(vertex_count, {});
-  std::vector<Corner> border;  // one for each end of a side at a border
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles.size()); ++t) {
     for (int k = 0; k < 3; ++k) {
       auto& here = at[triangles[t][k]];
       here.any = 4 * t + k;
       here.count += 1;
+    }
+  }
+  std::vector<Corner> border;  // one for each end of a side at a border
+  for (const auto t : border_triangles) {
+    for (int k = 0; k < 3; ++k) {
       if (!neighbours[t][k].exists()) border.insert(border.end(), {{t, k}, {t, (k + 1) % 3}});
     }
   }

@@ -59,8 +59,9 @@ void visit_fan(const Neighbours& neighbours, const Corner& start, const Visit& v
   }
 }
 
-/// Do the triangles at each vertex form one fan? No two of them may have the same corners.
+/// Do the triangles at each vertex form one fan? No two of them may have the same corners. Told are all triangles at a
+/// border.
 bool has_one_fan_everywhere(const std::vector<Triangle>& triangles, const Neighbours& neighbours,
-                            std::size_t vertex_count);
+                            const std::vector<std::int32_t>& border_triangles, std::size_t vertex_count);
 
 }  // namespace pectinate::detail

@@ -114,6 +114,7 @@ class EdgeMaker {
     topology_.edges.resize(likely_edges);
     topology_.edge_sides.resize(likely_edges);
     topology_.cut_edges.clear();
+    topology_.border_triangles.clear();
   }
 
   /// All from one vertex. The sides that leave it and those that arrive lie behind each other in memory.
@@ -130,6 +131,9 @@ class EdgeMaker {
   }
 
   Topology take() && {
+    auto& borders = topology_.border_triangles;
+    std::ranges::sort(borders);
+    borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
     topology_.edges.resize(count_);
     topology_.edge_sides.resize(count_);
     return std::move(topology_);
@@ -183,7 +187,10 @@ class EdgeMaker {
   void add_edge(std::int32_t low, std::span<const LowSide> sides) {
     const auto edge = static_cast<std::int32_t>(count_++);
     topology_.edges[edge] = {low, sides[0].high_end()};
-    for (const auto& side : sides) at_side(topology_.triangle_edges, side.number()) = edge;
+    for (const auto& side : sides) {
+      at_side(topology_.triangle_edges, side.number()) = edge;
+      if (sides.size() != 2) topology_.border_triangles.push_back(side.number() >> 2);
+    }
     if (sides.size() <= 2) {
       topology_.edge_sides[edge] = sides[0].number();
       if (sides.size() == 2) {
@@ -215,8 +222,10 @@ std::vector<std::int32_t> likely_repetitions(const Topology& topology) {
   std::vector<std::int32_t> likely;
   for (std::size_t t = 0; t < topology.neighbours.size(); ++t) {
     const auto& [a, b, c] = topology.neighbours[t];
-    const auto alike = [](PackedNeighbour x, PackedNeighbour y) { return x.triangle() == y.triangle() && x.exists(); };
-    if (alike(a, b) || alike(b, c) || alike(c, a)) likely.push_back(static_cast<std::int32_t>(t));
+    const auto alike = [](PackedNeighbour x, PackedNeighbour y) { return x.triangle() == y.triangle(); };
+    if (!(alike(a, b) | alike(b, c) | alike(c, a))) continue;  // one branch, not six
+    const auto joined = [&](PackedNeighbour x, PackedNeighbour y) { return alike(x, y) && x.exists(); };
+    if (joined(a, b) || joined(b, c) || joined(c, a)) likely.push_back(static_cast<std::int32_t>(t));
   }
   for (const auto& cut : topology.cut_edges) {
     for (const auto side : cut.sides) likely.push_back(side >> 2);
@@ -268,7 +277,7 @@ SplitSoup split_vertices(TriangleSoup soup, const Topology& topology) {
   auto& triangles = result.soup.triangles;
   auto& vertices = result.soup.vertices;
   auto& input_vertex = result.soup.input_vertex;
-  if (has_one_fan_everywhere(triangles, topology.neighbours, vertices.size())) return result;
+  if (has_one_fan_everywhere(triangles, topology.neighbours, topology.border_triangles, vertices.size())) return result;
   input_vertex = written_out(std::move(input_vertex), vertices.size());
   std::vector<std::uint8_t> seen(triangles.size(), 0);  // a bit for each corner
   std::vector<bool> taken(vertices.size(), false);

@@ -23,6 +23,7 @@ struct Topology {
                                          ///< number in cut_edges
   std::vector<CutEdge> cut_edges;
   std::vector<std::array<PackedNeighbour, 3>> neighbours;
+  std::vector<std::int32_t> border_triangles;  ///< in ascending order, all with a side that no other is joined to
 };
 
 /// How many edges there are, at most, on nearly every surface: half the sides, those at borders and cuts once more.
