@@ -69,13 +69,15 @@ void count_genus(const std::vector<std::int32_t>& vertex_counts, const std::vect
   }
 }
 
-/// Of what a mesh holds; all at once, because memory costs less so.
+/// For what a mesh holds, and for what making it takes; all at once, because memory costs less so.
 struct Rooms {
   detail::TriangleSoup soup;
   detail::Topology topology;
   std::vector<std::int32_t> components;
+  detail::Scratch scratch;
 
-  Rooms(std::size_t vertex_count, std::size_t triangle_count) {
+  Rooms(std::size_t vertex_count, std::size_t triangle_count)
+      : scratch(detail::scratch_size(vertex_count, triangle_count)) {
     const auto edge_count = detail::likely_edge_count(vertex_count, triangle_count);
     detail::back_together(
         {detail::make_room(soup.vertices, vertex_count), detail::make_room(soup.triangles, triangle_count),
@@ -90,12 +92,12 @@ struct Rooms {
 SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangle> triangles)
     : input_vertex_count_(vertices.size()), input_triangle_count_(triangles.size()) {
   Rooms rooms(vertices.size(), triangles.size());
-  auto soup = detail::clean_triangle_soup(vertices, triangles, std::move(rooms.soup));
-  auto topology = detail::join_triangles(soup, std::move(rooms.topology));
+  auto soup = detail::clean_triangle_soup(vertices, triangles, std::move(rooms.soup), rooms.scratch);
+  auto topology = detail::join_triangles(soup, std::move(rooms.topology), rooms.scratch);
   const auto repetitions = detail::find_repetitions(soup, detail::likely_repetitions(topology));
   if (!repetitions.empty()) {
     soup = detail::drop_repetitions(std::move(soup), repetitions);
-    topology = detail::join_triangles(soup, std::move(topology));
+    topology = detail::join_triangles(soup, std::move(topology), rooms.scratch);
   }
   for (const auto& cut : topology.cut_edges) {
     const auto [a, b] = topology.edges[cut.edge];
@@ -106,7 +108,7 @@ SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangl
   }
   topology = detail::rejoin_slits(std::move(topology), soup);
   first_copy_ = static_cast<std::int32_t>(soup.vertices.size());
-  auto split = detail::split_vertices(std::move(soup), topology);
+  auto split = detail::split_vertices(std::move(soup), topology, rooms.scratch);
 
   vertices_ = std::move(split.soup.vertices);
   triangles_ = std::move(split.soup.triangles);
@@ -116,7 +118,7 @@ SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangl
   repairs_ = std::move(split.soup.repairs);
   copied_vertices_ = std::move(split.copied_vertices);
   triangle_components_ = std::move(rooms.components);
-  orient(topology);
+  orient(topology, rooms.scratch);
   edges_ = std::move(topology.edges);
   triangle_edges_ = std::move(topology.triangle_edges);
   edge_sides_ = std::move(topology.edge_sides);
@@ -124,14 +126,14 @@ SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangl
   for (const auto& component : components_) area_ += component.area;
 }
 
-void SurfaceMesh::orient(detail::Topology& topology) {
-  auto orientation = detail::find_orientation(topology.neighbours, std::move(triangle_components_));
+void SurfaceMesh::orient(detail::Topology& topology, detail::Scratch& scratch) {
+  auto orientation = detail::find_orientation(topology.neighbours, std::move(triangle_components_), scratch);
   auto& reversed = orientation.to_reverse;
   for (const auto t : reversed) detail::reverse_triangle(t, triangles_, topology);
   triangle_components_ = std::move(orientation.triangle_components);
   const auto find_loops = [&] {
     return detail::find_boundary_loops(vertices_, triangles_, topology.neighbours, topology.border_triangles,
-                                       triangle_components_);
+                                       triangle_components_, scratch);
   };
   loops_ = find_loops();
   components_ = measure_components(triangle_components_, orientation.orientable, areas_);

@@ -12,6 +12,7 @@
 namespace pectinate {
 
 namespace detail {
+class Scratch;
 struct Topology;
 }
 
@@ -114,7 +115,7 @@ class SurfaceMesh {
   const std::vector<BoundaryLoop>& boundary_loops() const { return loops_; }  ///< longest first
 
  private:
-  void orient(detail::Topology& topology);
+  void orient(detail::Topology& topology, detail::Scratch& scratch);
   /// Of a vertex that was duplicated, the first copy.
   std::int32_t uncopied(std::int32_t vertex) const {
     const auto copy = vertex - first_copy_;

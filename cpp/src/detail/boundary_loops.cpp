@@ -48,7 +48,8 @@ std::vector<std::pair<std::int32_t, int>> find_border_sides(const Neighbours& ne
 /// The vertices of borders.
 class Links {
  public:
-  Links(std::size_t vertex_count, std::size_t border_count) : link_of_(vertex_count, none) {
+  Links(std::size_t vertex_count, std::size_t border_count, Scratch& scratch)
+      : link_of_(scratch.array<std::int32_t>(vertex_count, none)) {
     links_.reserve(border_count);
   }
 
@@ -63,7 +64,7 @@ class Links {
   }
 
  private:
-  std::vector<std::int32_t> link_of_;
+  std::span<std::int32_t> link_of_;
   std::vector<Link> links_;
 };
 
@@ -72,11 +73,12 @@ class Links {
 std::vector<BoundaryLoop> find_boundary_loops(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
                                               const Neighbours& neighbours,
                                               const std::vector<std::int32_t>& border_triangles,
-                                              const std::vector<std::int32_t>& triangle_components) {
+                                              const std::vector<std::int32_t>& triangle_components, Scratch& scratch) {
+  scratch.next_step();
   const auto sides = find_border_sides(neighbours, border_triangles);
   if (sides.empty()) return {};
   // One fan a vertex means two border ends at a border vertex, whatever the windings: the borders are cycles.
-  Links links(vertices.size(), sides.size());
+  Links links(vertices.size(), sides.size(), scratch);
   for (const auto& [t, k] : sides) {
     const auto a = triangles[t][k], b = triangles[t][(k + 1) % 3];
     // The end that the side leaves through comes first where it is free, so that loops run with their triangles.

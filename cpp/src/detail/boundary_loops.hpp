@@ -14,6 +14,6 @@ namespace pectinate::detail {
 std::vector<BoundaryLoop> find_boundary_loops(const std::vector<Vec3>& vertices, const std::vector<Triangle>& triangles,
                                               const Neighbours& neighbours,
                                               const std::vector<std::int32_t>& border_triangles,
-                                              const std::vector<std::int32_t>& triangle_components);
+                                              const std::vector<std::int32_t>& triangle_components, Scratch& scratch);
 
 }  // namespace pectinate::detail

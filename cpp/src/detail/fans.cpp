@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "detail/fans.hpp"
 
-#include "detail/large_array.hpp"
-
 namespace pectinate::detail {
 namespace {
 
@@ -30,8 +28,10 @@ bool closes_within(std::int32_t count, const Neighbours& neighbours, const Corne
 }  // namespace
 
 bool has_one_fan_everywhere(const std::vector<Triangle>& triangles, const Neighbours& neighbours,
-                            const std::vector<std::int32_t>& border_triangles, std::size_t vertex_count) {
-  auto at = roomy_vector<VertexCorners>(vertex_count, {});
+                            const std::vector<std::int32_t>& border_triangles, std::size_t vertex_count,
+                            Scratch& scratch) {
+  scratch.next_step();
+  const auto at = scratch.array<VertexCorners>(vertex_count, {});
   for (std::int32_t t = 0; t < static_cast<std::int32_t>(triangles.size()); ++t) {
     for (int k = 0; k < 3; ++k) {
       auto& here = at[triangles[t][k]];

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "detail/scratch.hpp"
 #include "pectinate/surface_mesh.hpp"
 
 namespace pectinate::detail {
@@ -62,6 +63,7 @@ void visit_fan(const Neighbours& neighbours, const Corner& start, const Visit& v
 /// Do the triangles at each vertex form one fan? No two of them may have the same corners. Told are all triangles at a
 /// border.
 bool has_one_fan_everywhere(const std::vector<Triangle>& triangles, const Neighbours& neighbours,
-                            const std::vector<std::int32_t>& border_triangles, std::size_t vertex_count);
+                            const std::vector<std::int32_t>& border_triangles, std::size_t vertex_count,
+                            Scratch& scratch);
 
 }  // namespace pectinate::detail

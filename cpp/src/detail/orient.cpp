@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-#include "detail/large_array.hpp"
 #include "detail/triangle_measures.hpp"
 #include "detail/vec.hpp"
 
@@ -17,10 +16,10 @@ constexpr double least_relative_volume = 1e-3;
 /// Components as they are found. A triangle's state is twice its component, and one more where it is to be reversed.
 class Flood {
  public:
-  Flood(const Neighbours& neighbours, std::vector<std::int32_t> room)
+  Flood(const Neighbours& neighbours, std::vector<std::int32_t> room, Scratch& scratch)
       : neighbours_(neighbours),
         states_(std::move(room)),
-        reached_(roomy_vector<std::int32_t>(neighbours.size() + 1, 0)) {
+        reached_(scratch.array<std::int32_t>(neighbours.size() + 1)) {
     states_.assign(neighbours.size(), -1);
   }
 
@@ -59,16 +58,18 @@ class Flood {
 
  private:
   const Neighbours& neighbours_;
-  std::vector<std::int32_t> states_, reached_;
+  std::vector<std::int32_t> states_;
+  std::span<std::int32_t> reached_;
   std::size_t end_ = 0;  // of what was reached
 };
 
 }  // namespace
 
-Orientation find_orientation(const Neighbours& neighbours, std::vector<std::int32_t> room) {
+Orientation find_orientation(const Neighbours& neighbours, std::vector<std::int32_t> room, Scratch& scratch) {
+  scratch.next_step();
   const auto count = static_cast<std::int32_t>(neighbours.size());
   Orientation result;
-  Flood flood(neighbours, std::move(room));
+  Flood flood(neighbours, std::move(room), scratch);
   for (std::int32_t start = 0; start < count; ++start) {
     if (flood.has_reached(start)) continue;
     const auto component = static_cast<std::int32_t>(result.orientable.size());

@@ -18,7 +18,7 @@ struct Orientation {
 
 /// Finds the components and the reversals that make neighbours agree, against as few input windings as possible.
 /// Where a component is not orientable, neighbours disagree along a seam. Uses an empty vector's room for components.
-Orientation find_orientation(const Neighbours& neighbours, std::vector<std::int32_t> room = {});
+Orientation find_orientation(const Neighbours& neighbours, std::vector<std::int32_t> room, Scratch& scratch);
 
 /// For each component of a mesh wound like that: do its normals point inwards? Told by the volume under it, with its
 /// openings closed by fans; never for non-orientable or (nearly) flat ones.

@@ -6,7 +6,6 @@
 #include <span>
 
 #include "detail/fans.hpp"
-#include "detail/large_array.hpp"
 
 namespace pectinate::detail {
 namespace {
@@ -47,10 +46,9 @@ inline void sort_few(LowSide* sides, std::size_t count) {
 /// The sides at each vertex that is their lower end: those that leave it, then those that arrive there.
 class SidesByEnds {
  public:
-  SidesByEnds(const std::vector<Triangle>& triangles, std::size_t vertex_count) : ends_(2 * vertex_count + 1, 0) {
-    // A large page too many is gone again soon, and costs less than the many small ones of its part that is used.
-    sides_.reserve(fill_large_pages<LowSide>(3 * triangles.size()));
-    sides_.resize(3 * triangles.size());
+  SidesByEnds(const std::vector<Triangle>& triangles, std::size_t vertex_count, Scratch& scratch)
+      : ends_(scratch.array<std::int32_t>(2 * vertex_count + 1, 0)),
+        sides_(scratch.array<LowSide>(3 * triangles.size())) {
     // Filling moves each bucket's end from where its sides begin to where they end.
     for (const auto& [a, b, c] : triangles) {
       ends_[Ends(a, b).bucket + 1] += 1;
@@ -89,8 +87,8 @@ class SidesByEnds {
     return {sides_.data() + (i == 0 ? 0 : ends_[i - 1]), sides_.data() + ends_[i]};
   }
 
-  std::vector<std::int32_t> ends_;
-  LargeArray<LowSide> sides_;
+  std::span<std::int32_t> ends_;
+  std::span<LowSide> sides_;
 };
 
 /// What is stored for a side of such a number: rows lie one behind the other.
@@ -209,13 +207,19 @@ class EdgeMaker {
 
 }  // namespace
 
-Topology join_triangles(const TriangleSoup& soup, Topology room) {
-  SidesByEnds sides(soup.triangles, soup.vertices.size());
+Topology join_triangles(const TriangleSoup& soup, Topology room, Scratch& scratch) {
+  scratch.next_step();
+  SidesByEnds sides(soup.triangles, soup.vertices.size(), scratch);
   EdgeMaker edges(soup, std::move(room));
   for (std::int32_t low = 0; low < static_cast<std::int32_t>(soup.vertices.size()); ++low) {
     edges.add(low, sides.leaving(low), sides.arriving(low));
   }
   return std::move(edges).take();
+}
+
+std::size_t scratch_size(std::size_t vertex_count, std::size_t triangle_count) {
+  constexpr std::size_t alignment = 128;
+  return (2 * vertex_count + 1) * sizeof(std::int32_t) + 3 * triangle_count * sizeof(LowSide) + alignment;
 }
 
 std::vector<std::int32_t> likely_repetitions(const Topology& topology) {
@@ -272,12 +276,14 @@ Topology rejoin_slits(Topology topology, const TriangleSoup& soup) {
   return topology;
 }
 
-SplitSoup split_vertices(TriangleSoup soup, const Topology& topology) {
+SplitSoup split_vertices(TriangleSoup soup, const Topology& topology, Scratch& scratch) {
   SplitSoup result{std::move(soup), {}};
   auto& triangles = result.soup.triangles;
   auto& vertices = result.soup.vertices;
   auto& input_vertex = result.soup.input_vertex;
-  if (has_one_fan_everywhere(triangles, topology.neighbours, topology.border_triangles, vertices.size())) return result;
+  if (has_one_fan_everywhere(triangles, topology.neighbours, topology.border_triangles, vertices.size(), scratch)) {
+    return result;
+  }
   input_vertex = written_out(std::move(input_vertex), vertices.size());
   std::vector<std::uint8_t> seen(triangles.size(), 0);  // a bit for each corner
   std::vector<bool> taken(vertices.size(), false);

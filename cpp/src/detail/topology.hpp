@@ -32,7 +32,10 @@ inline std::size_t likely_edge_count(std::size_t vertex_count, std::size_t trian
 }
 
 /// Joins the sides of every edge that has two triangles. Edges with more are cut open. Uses another topology's room.
-Topology join_triangles(const TriangleSoup& soup, Topology room = {});
+Topology join_triangles(const TriangleSoup& soup, Topology room, Scratch& scratch);
+
+/// What joining takes of it, which is more than what any other step of making a mesh takes.
+std::size_t scratch_size(std::size_t vertex_count, std::size_t triangle_count);
 
 /// Every triangle that may have the same corners as another, in ascending order: such ones share all three edges.
 std::vector<std::int32_t> likely_repetitions(const Topology& topology);
@@ -47,7 +50,7 @@ struct SplitSoup {
   TriangleSoup soup;
   std::vector<std::int32_t> copied_vertices;
 };
-SplitSoup split_vertices(TriangleSoup soup, const Topology& topology);
+SplitSoup split_vertices(TriangleSoup soup, const Topology& topology, Scratch& scratch);
 
 /// Swaps corners 1 and 2 of a triangle.
 void reverse_triangle(std::int32_t t, std::vector<Triangle>& triangles, Topology& topology);

@@ -79,8 +79,9 @@ TriangleSoup select_triangles(std::span<const Vec3> vertices, std::span<const Tr
 }
 
 /// The vertices that triangles use, and the triangles with their new numbers.
-TriangleSoup with_used_vertices(TriangleSoup soup, std::span<const Vec3> vertices) {
-  std::vector<std::uint8_t> is_used(vertices.size(), 0);
+TriangleSoup with_used_vertices(TriangleSoup soup, std::span<const Vec3> vertices, Scratch& scratch) {
+  scratch.next_step();
+  const auto is_used = scratch.array<std::uint8_t>(vertices.size(), 0);
   for (const auto& [a, b, c] : soup.triangles) is_used[a] = is_used[b] = is_used[c] = 1;
   if (std::ranges::find(is_used, 0) == is_used.end()) {
     soup.vertices.assign(vertices.begin(), vertices.end());
@@ -141,14 +142,14 @@ std::vector<std::int32_t> find_repetitions(const TriangleSoup& soup, const std::
 }
 
 TriangleSoup clean_triangle_soup(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                                 TriangleSoup room) {
+                                 TriangleSoup room, Scratch& scratch) {
   check_sizes(vertices.size(), triangles.size());
   auto soup = select_triangles(vertices, triangles, std::move(room));
   if (soup.triangles.empty()) {
     throw InvalidMesh("none of the " + std::to_string(triangles.size()) +
                       " triangles is valid (finite, with an area); check the coordinates and the indices");
   }
-  return with_used_vertices(std::move(soup), vertices);
+  return with_used_vertices(std::move(soup), vertices, scratch);
 }
 
 TriangleSoup drop_repetitions(TriangleSoup soup, const std::vector<std::int32_t>& repetitions) {

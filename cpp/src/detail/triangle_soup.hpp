@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "detail/scratch.hpp"
 #include "pectinate/surface_mesh.hpp"
 
 namespace pectinate::detail {
@@ -28,7 +29,7 @@ std::vector<std::int32_t> written_out(std::vector<std::int32_t> input, std::size
 /// Drops triangles with non-finite corners and degenerate ones, then vertices that nothing uses. Uses an empty soup's
 /// room. Throws InvalidMesh for an index out of range or when nothing is left.
 TriangleSoup clean_triangle_soup(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                                 TriangleSoup room = {});
+                                 TriangleSoup room, Scratch& scratch);
 
 /// Among some triangles of a soup, in ascending order, all but the first of those with the same three corners.
 std::vector<std::int32_t> find_repetitions(const TriangleSoup& soup, const std::vector<std::int32_t>& candidates);
