@@ -91,7 +91,9 @@ struct Rooms {
 
 SurfaceMesh::SurfaceMesh(std::span<const Vec3> vertices, std::span<const Triangle> triangles)
     : input_vertex_count_(vertices.size()), input_triangle_count_(triangles.size()) {
-  Rooms rooms(vertices.size(), triangles.size());
+  detail::check_sizes(vertices.size(), triangles.size());
+  // There may be many vertices that no triangle uses; those in use are hardly ever more than triangles.
+  Rooms rooms(std::min(vertices.size(), triangles.size()), triangles.size());
   auto soup = detail::clean_triangle_soup(vertices, triangles, std::move(rooms.soup), rooms.scratch);
   auto topology = detail::join_triangles(soup, std::move(rooms.topology), rooms.scratch);
   const auto repetitions = detail::find_repetitions(soup, detail::likely_repetitions(topology));

@@ -20,7 +20,8 @@ struct SideNeighbour {
 class PackedNeighbour {
  public:
   PackedNeighbour() = default;
-  PackedNeighbour(std::int32_t triangle, int side, bool runs_alike) : PackedNeighbour(4 * triangle + side, runs_alike) {}
+  PackedNeighbour(std::int32_t triangle, int side, bool runs_alike)
+      : PackedNeighbour(4 * triangle + side, runs_alike) {}
   PackedNeighbour(std::int32_t side_number, bool runs_alike)  ///< 4 triangle + side
       : code_(static_cast<std::uint32_t>(side_number) << 1 | static_cast<std::uint32_t>(runs_alike)) {}
 

@@ -14,7 +14,7 @@ namespace pectinate {
 namespace detail {
 class Scratch;
 struct Topology;
-}
+}  // namespace detail
 
 /// What was changed to make a surface of the input; every index is one of the input's.
 struct MeshRepairs {

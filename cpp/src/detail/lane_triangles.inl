@@ -17,9 +17,8 @@ struct LaneTriangles {
 /// As many triangles as there are lanes, from one on; the last one once more where there are fewer.
 inline LaneTriangles gather_triangles(const Vec3* vertices, std::span<const Triangle> triangles, std::size_t first) {
   const auto corners = [&](int k) {
-    return gather([&](int lane) -> const Vec3& {
-      return vertices[triangles[std::min(first + lane, triangles.size() - 1)][k]];
-    });
+    return gather(
+        [&](int lane) -> const Vec3& { return vertices[triangles[std::min(first + lane, triangles.size() - 1)][k]]; });
   };
   return {corners(0), corners(1), corners(2)};
 }

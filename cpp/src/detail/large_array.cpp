@@ -33,19 +33,22 @@ void advise(void* memory, std::size_t size, std::size_t page, int advice) {
 
 /// Is next to nothing of a large page there yet?
 bool is_untouched(void* page) {
-  std::array<unsigned char, 512> is_there;
+  std::array<unsigned char, 512> is_there{};
   if (large_page / small_page() > is_there.size() || mincore(page, large_page, is_there.data()) != 0) return false;
   return std::ranges::count_if(is_there, [](auto flags) { return flags & 1; }) < 64;
 }
 
+#endif
+
 /// Backs with large pages what was only touched where the allocator keeps its books, for which the system has begun
 /// with small ones.
-void make_large_pages(std::byte* memory, std::size_t size) {
+void make_large_pages([[maybe_unused]] std::byte* memory, [[maybe_unused]] std::size_t size) {
+#ifdef __linux__
   for (auto i = -reinterpret_cast<std::uintptr_t>(memory) % large_page; i + large_page <= size; i += large_page) {
     if (is_untouched(memory + i)) (void)madvise(memory + i, large_page, collapse);
   }
-}
 #endif
+}
 
 }  // namespace
 
@@ -63,15 +66,14 @@ void back_with_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t
 
 void back_together(std::vector<std::span<std::byte>> rooms) {
   constexpr std::ptrdiff_t greatest_gap = 8192;  // of what the system and the allocator put between two
+  std::erase_if(rooms, [](const auto& room) { return room.empty(); });
   std::ranges::sort(rooms, {}, [](const auto& room) { return room.data(); });
   for (std::size_t first = 0, last = 0; first < rooms.size(); first = last) {
     const auto end_of = [&](std::size_t i) { return rooms[i].data() + rooms[i].size(); };
     for (++last; last < rooms.size() && rooms[last].data() - end_of(last - 1) <= greatest_gap;) ++last;
     const std::size_t size = end_of(last - 1) - rooms[first].data();
-#ifdef __linux__
     prefer_large_pages(rooms[first].data(), size);
     make_large_pages(rooms[first].data(), size);
-#endif
     back_with_pages(rooms[first].data(), size);
   }
 }

@@ -54,7 +54,8 @@ struct DirectionBlock {
 
   void set(std::size_t first, const LaneDirections& found) {
     const auto as_lanes = [](DirectionStatus one) { return Mask{} + static_cast<int>(one); };
-    Mask found_status = found.share <= least_share ? as_lanes(DirectionStatus::normal) : as_lanes(DirectionStatus::valid);
+    Mask found_status =
+        found.share <= least_share ? as_lanes(DirectionStatus::normal) : as_lanes(DirectionStatus::valid);
     found_status = found.scale == 0 ? as_lanes(DirectionStatus::zero) : found_status;
     found_status = found.is_finite ? found_status : as_lanes(DirectionStatus::non_finite);
     const Mask is_valid = found_status == as_lanes(DirectionStatus::valid);

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory_resource>
 #include <span>
+#include <vector>
 
 #include "detail/large_array.hpp"
 
@@ -13,26 +13,37 @@ namespace pectinate::detail {
 /// Memory for one step after the other: what was touched once costs nothing again.
 class Scratch {
  public:
-  explicit Scratch(std::size_t size)
-      : memory_(large_array<std::byte>(fill_large_pages<std::byte>(size))), resource_(memory_.data(), memory_.size()) {}
+  explicit Scratch(std::size_t size) : memory_(large_array<std::byte>(fill_large_pages<std::byte>(size))) {}
 
-  /// Valid until the next step.
+  /// Valid until the next step. Without values.
+  template <class T>
+  std::span<T> array(std::size_t count) {
+    const auto first = (used_ + alignment - 1) / alignment * alignment;
+    auto* begin = memory_.data() + first;
+    if (first + count * sizeof(T) <= memory_.size()) {
+      used_ = first + count * sizeof(T);
+    } else {
+      begin = more_.emplace_back(count * sizeof(T)).data();
+    }
+    return {reinterpret_cast<T*>(begin), count};
+  }
   template <class T>
   std::span<T> array(std::size_t count, const T& value) {
     const auto result = array<T>(count);
     std::ranges::fill(result, value);
     return result;
   }
-  /// The same without values.
-  template <class T>
-  std::span<T> array(std::size_t count) {
-    return {static_cast<T*>(resource_.allocate(count * sizeof(T), 64)), count};
+  void next_step() {
+    used_ = 0;
+    more_.clear();
   }
-  void next_step() { resource_.release(); }
 
  private:
+  static constexpr std::size_t alignment = 64;
+
   LargeArray<std::byte> memory_;
-  std::pmr::monotonic_buffer_resource resource_;  // what does not fit it gets elsewhere
+  std::size_t used_ = 0;
+  std::vector<LargeArray<std::byte>> more_;  // what found no place
 };
 
 }  // namespace pectinate::detail

@@ -28,6 +28,9 @@ struct LowSide {
   bool operator<(const LowSide& other) const { return code < other.code; }
 };
 
+/// So many sides ahead of its turn what will be written of a side is fetched; behind the last one lie as many dummies.
+constexpr std::size_t fetched_ahead = 64;
+
 /// Puts two in order. Without a branch, because wrong guesses would cost more.
 inline void sort_two(LowSide& a, LowSide& b) {
   const auto difference = static_cast<std::int64_t>(b.code - a.code);  // codes leave the sign's bit free
@@ -48,7 +51,8 @@ class SidesByEnds {
  public:
   SidesByEnds(const std::vector<Triangle>& triangles, std::size_t vertex_count, Scratch& scratch)
       : ends_(scratch.array<std::uint32_t>(2 * vertex_count + 1, 0)),
-        sides_(scratch.array<LowSide>(3 * triangles.size())) {
+        sides_(scratch.array<LowSide>(3 * triangles.size() + fetched_ahead)) {
+    std::ranges::fill(sides_.last(fetched_ahead), LowSide(0, 0));
     // Filling moves each bucket's end from where its sides begin to where they end.
     for (const auto& [a, b, c] : triangles) {
       ends_[Ends(a, b).bucket + 1] += 1;
@@ -79,9 +83,7 @@ class SidesByEnds {
     }
   };
 
-  void add(const Ends& ends, std::uint32_t number) {
-    sides_[ends_[ends.bucket]++] = {ends.high, number};
-  }
+  void add(const Ends& ends, std::uint32_t number) { sides_[ends_[ends.bucket]++] = {ends.high, number}; }
   std::span<LowSide> bucket(std::size_t i) {
     return {sides_.data() + (i == 0 ? 0 : ends_[i - 1]), sides_.data() + ends_[i]};
   }
@@ -147,14 +149,22 @@ class EdgeMaker {
   /// Where every edge has one side that leaves and one that arrives, as at nearly all vertices of most surfaces.
   bool add_pairs(std::int32_t low, std::span<const LowSide> leaving, std::span<const LowSide> arriving) {
     switch (leaving.size()) {
-      case 0: return true;
-      case 1: return add_pairs<1>(low, leaving.data(), arriving.data());
-      case 2: return add_pairs<2>(low, leaving.data(), arriving.data());
-      case 3: return add_pairs<3>(low, leaving.data(), arriving.data());
-      case 4: return add_pairs<4>(low, leaving.data(), arriving.data());
-      case 5: return add_pairs<5>(low, leaving.data(), arriving.data());
-      case 6: return add_pairs<6>(low, leaving.data(), arriving.data());
-      default: return false;
+      case 0:
+        return true;
+      case 1:
+        return add_pairs<1>(low, leaving.data(), arriving.data());
+      case 2:
+        return add_pairs<2>(low, leaving.data(), arriving.data());
+      case 3:
+        return add_pairs<3>(low, leaving.data(), arriving.data());
+      case 4:
+        return add_pairs<4>(low, leaving.data(), arriving.data());
+      case 5:
+        return add_pairs<5>(low, leaving.data(), arriving.data());
+      case 6:
+        return add_pairs<6>(low, leaving.data(), arriving.data());
+      default:
+        return false;
     }
   }
   template <int count>
@@ -171,6 +181,7 @@ class EdgeMaker {
     if (difference >> 32 != 0 || is_repeated) return false;
     const auto first = static_cast<std::int32_t>(count_);
     count_ += count;
+    for (int i = 0; i < 2 * count; ++i) fetch(leaving[i + fetched_ahead].number());
     for (int i = 0; i < count; ++i) {
       const auto a = here[i].number(), b = there[i].number();
       topology_.edges[first + i] = {low, here[i].high_end()};
@@ -180,6 +191,12 @@ class EdgeMaker {
       join_sides(a, b, false, topology_);
     }
     return true;
+  }
+
+  /// What is written of a side lies anywhere in memory.
+  void fetch(std::int32_t number) {
+    __builtin_prefetch(&at_side(topology_.triangle_edges, number), 1);
+    __builtin_prefetch(&at_side(topology_.neighbours, number), 1);
   }
 
   /// The edge that some sides are.
@@ -220,7 +237,8 @@ Topology join_triangles(const TriangleSoup& soup, Topology room, Scratch& scratc
 
 std::size_t scratch_size(std::size_t vertex_count, std::size_t triangle_count) {
   constexpr std::size_t alignment = 128;
-  return (2 * vertex_count + 1) * sizeof(std::int32_t) + 3 * triangle_count * sizeof(LowSide) + alignment;
+  return (2 * vertex_count + 1) * sizeof(std::int32_t) + (3 * triangle_count + fetched_ahead) * sizeof(LowSide) +
+         alignment;
 }
 
 std::vector<std::int32_t> likely_repetitions(const Topology& topology) {

@@ -18,13 +18,6 @@ bool is_finite(const Vec3& v) {
   return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
 }
 
-void check_sizes(std::size_t vertex_count, std::size_t triangle_count) {
-  constexpr auto most = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) / 4;
-  if (vertex_count > most || triangle_count > most) {
-    throw InvalidMesh("the mesh has more than " + std::to_string(most) + " vertices or triangles; split it");
-  }
-}
-
 void check_indices(std::span<const Triangle> triangles, std::size_t vertex_count) {
   const auto is_wrong = [&](std::int32_t v) { return static_cast<std::uint32_t>(v) >= vertex_count; };
   bool are_wrong = false;  // told without a branch for each, so that many are looked at together
@@ -32,9 +25,8 @@ void check_indices(std::span<const Triangle> triangles, std::size_t vertex_count
   if (!are_wrong) return;
   const auto wrong = std::ranges::find_if(triangles, [&](const auto& t) { return std::ranges::any_of(t, is_wrong); });
   throw InvalidMesh("triangle " + std::to_string(wrong - triangles.begin()) + " refers to vertex " +
-                    std::to_string(*std::ranges::find_if(*wrong, is_wrong)) +
-                    ", but vertices are numbered from 0 to " + std::to_string(vertex_count) +
-                    " - 1; correct the index or shift it to start at 0");
+                    std::to_string(*std::ranges::find_if(*wrong, is_wrong)) + ", but vertices are numbered from 0 to " +
+                    std::to_string(vertex_count) + " - 1; correct the index or shift it to start at 0");
 }
 
 /// Rows without some of them, which are given in ascending order.
@@ -105,6 +97,13 @@ TriangleSoup with_used_vertices(TriangleSoup soup, std::span<const Vec3> vertice
 
 }  // namespace
 
+void check_sizes(std::size_t vertex_count, std::size_t triangle_count) {
+  constexpr auto most = static_cast<std::size_t>(std::numeric_limits<std::int32_t>::max()) / 4;
+  if (vertex_count > most || triangle_count > most) {
+    throw InvalidMesh("the mesh has more than " + std::to_string(most) + " vertices or triangles; split it");
+  }
+}
+
 std::vector<std::int32_t> written_out(std::vector<std::int32_t> input, std::size_t count) {
   if (!input.empty()) return input;
   input.resize(count);
@@ -141,9 +140,8 @@ std::vector<std::int32_t> find_repetitions(const TriangleSoup& soup, const std::
   return repeated;
 }
 
-TriangleSoup clean_triangle_soup(std::span<const Vec3> vertices, std::span<const Triangle> triangles,
-                                 TriangleSoup room, Scratch& scratch) {
-  check_sizes(vertices.size(), triangles.size());
+TriangleSoup clean_triangle_soup(std::span<const Vec3> vertices, std::span<const Triangle> triangles, TriangleSoup room,
+                                 Scratch& scratch) {
   auto soup = select_triangles(vertices, triangles, std::move(room));
   if (soup.triangles.empty()) {
     throw InvalidMesh("none of the " + std::to_string(triangles.size()) +
