@@ -167,22 +167,22 @@ class EdgeMaker {
         return false;
     }
   }
-  template <int count>
+  template <int Count>
   bool add_pairs(std::int32_t low, const LowSide* leaving, const LowSide* arriving) {
-    std::array<LowSide, count> here, there;
-    std::copy_n(leaving, count, here.begin());
-    std::copy_n(arriving, count, there.begin());
-    sort_few(here.data(), count);
-    sort_few(there.data(), count);
+    std::array<LowSide, Count> here, there;
+    std::copy_n(leaving, Count, here.begin());
+    std::copy_n(arriving, Count, there.begin());
+    sort_few(here.data(), Count);
+    sort_few(there.data(), Count);
     std::uint64_t difference = 0;
     bool is_repeated = false;
-    for (int i = 0; i < count; ++i) difference |= here[i].code ^ there[i].code;
-    for (int i = 1; i < count; ++i) is_repeated |= here[i].high_end() == here[i - 1].high_end();
+    for (int i = 0; i < Count; ++i) difference |= here[i].code ^ there[i].code;
+    for (int i = 1; i < Count; ++i) is_repeated |= here[i].high_end() == here[i - 1].high_end();
     if (difference >> 32 != 0 || is_repeated) return false;
     const auto first = static_cast<std::int32_t>(count_);
-    count_ += count;
-    for (int i = 0; i < 2 * count; ++i) fetch(leaving[i + fetched_ahead].number());
-    for (int i = 0; i < count; ++i) {
+    count_ += Count;
+    for (int i = 0; i < 2 * Count; ++i) fetch(leaving[i + fetched_ahead].number());
+    for (int i = 0; i < Count; ++i) {
       const auto a = here[i].number(), b = there[i].number();
       topology_.edges[first + i] = {low, here[i].high_end()};
       topology_.edge_sides[first + i] = std::min(a, b);
@@ -246,9 +246,10 @@ std::vector<std::int32_t> likely_repetitions(const Topology& topology) {
   std::int32_t t = 0;
   for (const auto& [a, b, c] : topology.neighbours) {
     const auto x = a.triangle(), y = b.triangle(), z = c.triangle();
-    // One branch, and a rare one; what lacks two neighbours gets past it too.
-    if ((x == y) | (y == z) | (z == x)) {
-      if ((x == y && a.exists()) || (y == z && b.exists()) || (z == x && c.exists())) likely.push_back(t);
+    // One branch for most, and a rare one.
+    if (((x == y) | (y == z) | (z == x)) &&
+        ((x == y && a.exists()) || (y == z && b.exists()) || (z == x && c.exists()))) {
+      likely.push_back(t);
     }
     ++t;
   }
