@@ -58,12 +58,12 @@ class LargePageAllocator {
   explicit LargePageAllocator(const LargePageAllocator<U>&) {}
 
   T* allocate(std::size_t count) {
-    const auto size = count * sizeof(T);
+    const auto size = size_of(count);
     void* memory = ::operator new(size, alignment(size));
     if (size >= large_page) prefer_large_pages(memory, size);
     return static_cast<T*>(memory);
   }
-  void deallocate(T* memory, std::size_t count) { ::operator delete(memory, alignment(count * sizeof(T))); }
+  void deallocate(T* memory, std::size_t count) { ::operator delete(memory, alignment(size_of(count))); }
 
   /// Elements without a value are left as the memory is: to write it twice costs as much as to compute them.
   template <class U>
@@ -80,6 +80,11 @@ class LargePageAllocator {
  private:
   static constexpr std::size_t large_page = std::size_t{1} << 21, cache_line = 64;
 
+  /// A large page that would be filled by half is taken whole: it costs less than so many small ones.
+  static std::size_t size_of(std::size_t count) {
+    const auto size = count * sizeof(T), rest = size % large_page;
+    return rest < large_page / 2 ? size : size - rest + large_page;
+  }
   static std::align_val_t alignment(std::size_t size) {
     return std::align_val_t{size >= large_page ? large_page : cache_line};
   }

@@ -10,6 +10,7 @@
 
 #include "detail/chord_measures.hpp"
 #include "detail/curve_order.hpp"
+#include "detail/scratch.hpp"
 
 namespace pectinate::detail {
 namespace {
@@ -52,8 +53,8 @@ class SheetMaker {
         field_(field),
         // pi disables the criterion, whatever the rounding.
         least_turn_cosine_(abrupt_turn_angle < std::numbers::pi ? std::cos(abrupt_turn_angle) : -2),
-        vertex_ranks_(curve_ranks(mesh.vertices())),
-        cosines_(large_array<SideCosines>(mesh.triangle_count())) {}
+        scratch_(mesh.triangle_count() * sizeof(SideCosines)),
+        vertex_ranks_(curve_ranks(mesh.vertices(), scratch_)) {}
 
   Sheet make() && {
     sheet_.vertices = large_array<Vector>(mesh_.vertices().size());
@@ -61,7 +62,9 @@ class SheetMaker {
       sheet_.vertices[vertex_ranks_[v]] = vector(mesh_.vertices()[v]);
     }
     const auto count = static_cast<std::int32_t>(mesh_.triangle_count());
-    sheet_.ranks = ranks_by_corner(mesh_.triangles(), vertex_ranks_);
+    sheet_.ranks = ranks_by_corner(mesh_.triangles(), vertex_ranks_, scratch_);
+    scratch_.next_step();
+    cosines_ = scratch_.array<SideCosines>(count);
     sheet_.mesh_triangles = roomy_vector<std::int32_t>(count, 0);
     sheet_.corners = large_array<std::array<std::int32_t, 3>>(count);
     sheet_.crossings = large_array<TriangleCrossings>(count);
@@ -195,8 +198,9 @@ class SheetMaker {
   const SurfaceMesh& mesh_;
   const OrientationField& field_;
   double least_turn_cosine_;
+  Scratch scratch_;
   std::vector<std::int32_t> vertex_ranks_;
-  LargeArray<SideCosines> cosines_;
+  std::span<SideCosines> cosines_;
   Sheet sheet_;
 };
 
