@@ -49,7 +49,7 @@ class ExactOccupancy final : public Occupancy {
       line.chords.push_back(chord_of({streamline.points[i], streamline.triangles[i]}));
     }
     occupancy_.add(line);
-    for (const auto triangle : occupancy_.changed()) update(sheet_.mesh_triangles[triangle]);
+    for (const auto triangle : occupancy_.changed()) update(sheet_.mesh_triangle(triangle));
   }
 
   void retire_seed(const Seed& seed) override {

@@ -102,7 +102,7 @@ StopReason trace_one_way(const Tracing& tracing, Entry entry, double direction, 
   double length = 0;
   for (std::int64_t step = 0; step < tracing.options.max_steps; ++step) {
     const auto& crossings = all[entry.triangle];
-    const auto triangle = tracing.sheet.mesh_triangles[entry.triangle];
+    const auto triangle = tracing.sheet.mesh_triangle(entry.triangle);
     const Role role = detail::exit_role(crossings, entry.role, chord);
     const auto exit = crossings.exit(role);
     const auto point = detail::edge_point(tracing.mesh, triangle, crossings, role, chord);

@@ -38,10 +38,10 @@ double uncovered_area(const SurfaceMesh& mesh, const StreamlineTracer& tracer, c
     for (std::size_t i = 0; i < lines.size() && !is_covered; ++i) {
       for (std::size_t k = 0; k < lines[i].triangles.size() && !is_out[i]; ++k) {
         const double distance = detail::distance_to_segment(centre, lines[i].points[k], lines[i].points[k + 1]);
-        is_covered |= distance <= tracer.separation_distance(sheet.mesh_triangles[lines[i].triangles[k]]);
+        is_covered |= distance <= tracer.separation_distance(sheet.mesh_triangle(lines[i].triangles[k]));
       }
     }
-    if (!is_covered) area += mesh.triangle_areas()[sheet.mesh_triangles[t]];
+    if (!is_covered) area += mesh.triangle_areas()[sheet.mesh_triangle(t)];
   }
   return area;
 }

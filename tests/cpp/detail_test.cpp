@@ -229,7 +229,7 @@ TEST_CASE("crossings: exits lead back through the same side") {
       const auto back = sheet.crossings[exit.triangle].exit(exit.role);
       CHECK((back.triangle == t && back.role == role));
       const auto edge = [&](std::int32_t i, Role side) {
-        return edge_of(mesh, sheet.mesh_triangles[i], sheet.crossings[i], side);
+        return edge_of(mesh, sheet.mesh_triangle(i), sheet.crossings[i], side);
       };
       CHECK(edge(t, role) == edge(exit.triangle, exit.role));
       ++joined;

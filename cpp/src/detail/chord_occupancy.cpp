@@ -77,7 +77,7 @@ void ChordOccupancy::make_tiles() {
   }
   LargeArray<std::uint8_t> is_on_border(points.size(), 0);
   for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
-    const auto& [low, middle, high] = sheet_.corners[t];
+    const auto& [low, middle, high, mesh_triangle] = sheet_.triangles[t];
     const Point &a = points[low], &b = points[middle], &c = points[high];
     const Point centroid = (a + b + c) * (1.F / 3);
     const float square =
@@ -95,14 +95,14 @@ void ChordOccupancy::make_tiles() {
     if (has_seed_sets_) unseeded_.fill(t);
   }
   for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
-    const auto& [low, middle, high] = sheet_.corners[t];
+    const auto& [low, middle, high, mesh_triangle] = sheet_.triangles[t];
     if (is_on_border[low] | is_on_border[middle] | is_on_border[high]) tiles_[t].radius *= -1;
   }
 }
 
 /// Or is it one where the surface was cut?
 bool ChordOccupancy::lies_on_border(std::int32_t triangle, Role side) const {
-  const auto edge = edge_of(mesh_, sheet_.mesh_triangles[triangle], sheet_.crossings[triangle], side);
+  const auto edge = edge_of(mesh_, sheet_.mesh_triangle(triangle), sheet_.crossings[triangle], side);
   return mesh_.edge_triangles(edge).size() == 1;
 }
 
@@ -263,7 +263,7 @@ inline void ChordOccupancy::reach_neighbours(const Reached& from) {
     if (next != none) {
       reach_from(tile, from.distance, next);
     } else {  // where the surface was cut at a non-manifold edge, it goes on for distances
-      const auto edge = edge_of(mesh_, sheet_.mesh_triangles[from.triangle], sheet_.crossings[from.triangle], role);
+      const auto edge = edge_of(mesh_, sheet_.mesh_triangle(from.triangle), sheet_.crossings[from.triangle], role);
       for (const auto other : mesh_.edge_triangles(edge)) reach_from(tile, from.distance, sheet_.ranks[other]);
     }
   }
@@ -287,7 +287,8 @@ void ChordOccupancy::visit_border(Reached reached, const Polyline& line, std::si
     measure_distances(tile);
     if (nearest_capsule(1) > limit) return;
   }
-  for (const auto v : sheet_.corners[reached.triangle]) __builtin_prefetch(&sheet_.vertices[v]);
+  const auto& [low, middle, high, mesh_triangle] = sheet_.triangles[reached.triangle];
+  for (const auto v : {low, middle, high}) __builtin_prefetch(&sheet_.vertices[v]);
   reached.distance = std::min(reached.distance, coarse + error);
   reach_neighbours(reached);
   mark_in(reached, stops(), line, first);

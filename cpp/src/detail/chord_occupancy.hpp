@@ -113,7 +113,7 @@ class ChordOccupancy {
   };
 
   void prefetch(std::int32_t triangle) const {
-    __builtin_prefetch(&sheet_.corners[triangle]);
+    __builtin_prefetch(&sheet_.triangles[triangle]);
     __builtin_prefetch(&sheet_.crossings[triangle]);
     stopped_.prefetch(triangle);
   }
@@ -138,7 +138,7 @@ class ChordOccupancy {
   void mark_exactly(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking);
   double greatest_clearance() const { return std::max(clearance_.stop, clearance_.seed); }
   double separation(std::int32_t triangle) const {
-    return tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
+    return tracer_.separation_distance(sheet_.mesh_triangle(triangle));
   }
 
   const SurfaceMesh& mesh_;

@@ -29,7 +29,7 @@ class ChordTracer {
 
   /// d_sep in a triangle of the sheet.
   double separation(std::int32_t triangle) const {
-    return separation_ > 0 ? separation_ : tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
+    return separation_ > 0 ? separation_ : tracer_.separation_distance(sheet_.mesh_triangle(triangle));
   }
   /// 0 where it varies.
   double separation() const { return separation_; }

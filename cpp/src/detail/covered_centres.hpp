@@ -37,9 +37,9 @@ class CoveredCentres {
   std::vector<Bundle> bundles_of(const Polyline& line) const;
   bool is_covered(const Vector& point, const Polyline& line, const Bundle& bundle) const;
   double reach(std::int32_t triangle) const {
-    return clearance_ * tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
+    return clearance_ * tracer_.separation_distance(sheet_.mesh_triangle(triangle));
   }
-  double area(std::int32_t triangle) const { return mesh_.triangle_areas()[sheet_.mesh_triangles[triangle]]; }
+  double area(std::int32_t triangle) const { return mesh_.triangle_areas()[sheet_.mesh_triangle(triangle)]; }
 
   const SurfaceMesh& mesh_;
   const StreamlineTracer& tracer_;

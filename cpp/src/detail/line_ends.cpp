@@ -65,10 +65,10 @@ class EndExtender {
   std::int64_t first_point(std::size_t line) const { return placement_.offsets[line]; }
   std::int64_t last_point(std::size_t line) const { return placement_.offsets[line + 1] - 1; }
   double separation(std::int32_t triangle) const {
-    return tracer_.separation_distance(sheet_.mesh_triangles[triangle]);
+    return tracer_.separation_distance(sheet_.mesh_triangle(triangle));
   }
   std::int32_t mesh_triangle(const Extension& extension) const {
-    return sheet_.mesh_triangles[extension.chord.triangle()];
+    return sheet_.mesh_triangle(extension.chord.triangle());
   }
 
   SegmentGrid make_grid() const {

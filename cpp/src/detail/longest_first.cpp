@@ -99,7 +99,7 @@ class LineFiller::Implementation {
     for (std::int32_t t = 0; t < sheet_.triangle_count(); ++t) {
       if (!occupancy_.unseeded().is_full(t)) triangles.push_back(t);
     }
-    std::ranges::sort(triangles, {}, [&](std::int32_t t) { return sheet_.mesh_triangles[t]; });
+    std::ranges::sort(triangles, {}, [&](std::int32_t t) { return sheet_.mesh_triangle(t); });
     return triangles;
   }
 

@@ -88,7 +88,7 @@ void PlacedLines::write(const Sheet& sheet, const PlacedLine& line, Placement& p
   visit_weights(sheet, line.chords, line.is_closed,
                 [&](const Vec3& weights) { placement.barycentric.push_back(weights); });
   for (const auto& chord : line.chords) {
-    const auto triangle = sheet.mesh_triangles[chord.triangle()];
+    const auto triangle = sheet.mesh_triangle(chord.triangle());
     placement.segment_triangles.push_back(triangle);
     placement.point_triangles.push_back(triangle);
   }

@@ -210,7 +210,7 @@ void Polisher::note_free(std::int32_t line) {
 
 double Polisher::free_area(std::int32_t triangle) const {
   if (occupancy_.stopped().is_full(triangle)) return 0;
-  return occupancy_.uncovered_share(triangle) * mesh_.triangle_areas()[sheet_.mesh_triangles[triangle]];
+  return occupancy_.uncovered_share(triangle) * mesh_.triangle_areas()[sheet_.mesh_triangle(triangle)];
 }
 
 /// Lines that ended near one that is no more are traced again; false where that comes to no end.

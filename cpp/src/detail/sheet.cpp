@@ -65,8 +65,7 @@ class SheetMaker {
     sheet_.ranks = ranks_by_corner(mesh_.triangles(), vertex_ranks_, scratch_);
     scratch_.next_step();
     cosines_ = scratch_.array<SideCosines>(count);
-    sheet_.mesh_triangles = roomy_vector<std::int32_t>(count, 0);
-    sheet_.corners = large_array<std::array<std::int32_t, 3>>(count);
+    sheet_.triangles = large_array<SheetTriangle>(count);
     sheet_.crossings = large_array<TriangleCrossings>(count);
     for (std::int32_t t = 0; t < count; t += measured_lanes) measure(t, std::min(count - t, measured_lanes));
     set_exits();
@@ -80,8 +79,7 @@ class SheetMaker {
   /// What will soon be written lies scattered.
   void prefetch(std::int32_t t) const {
     const auto i = sheet_.ranks[std::min(t, static_cast<std::int32_t>(sheet_.ranks.size()) - 1)];
-    __builtin_prefetch(&sheet_.mesh_triangles[i], 1);
-    __builtin_prefetch(&sheet_.corners[i], 1);
+    __builtin_prefetch(&sheet_.triangles[i], 1);
     __builtin_prefetch(&sheet_.crossings[i], 1);
     __builtin_prefetch(&cosines_[i], 1);
   }
@@ -149,8 +147,7 @@ class SheetMaker {
     const Side low = side_of_triangle(t, low_high, m, measures, lane);
     const Side middle = side_of_triangle(t, low_middle, m, measures, lane);
     const Side high = side_of_triangle(t, middle_high, m, measures, lane);
-    sheet_.mesh_triangles[i] = t;
-    sheet_.corners[i] = {low.vertex, middle.vertex, high.vertex};
+    sheet_.triangles[i] = {low.vertex, middle.vertex, high.vertex, t};
     auto& crossings = sheet_.crossings[i];
     crossings.neighbours = {low.neighbour, middle.neighbour, high.neighbour};
     crossings.codes = {low.code, middle.code, high.code};

@@ -13,21 +13,26 @@
 
 namespace pectinate::detail {
 
+/// A triangle's corners, as numbers of vertices, and which of the mesh's triangles it is; never across cache lines.
+struct alignas(16) SheetTriangle {
+  std::int32_t low, middle, high, mesh_triangle;
+};
+
 /// A surface and its field as streamlines see them. Its triangles lie in memory along a space-filling curve: what is
 /// near on the surface is near in the cache. Everything here is indexed by these triangles, not by the mesh's.
 struct Sheet {
-  std::vector<std::int32_t> mesh_triangles;         ///< per triangle here
-  std::vector<std::int32_t> ranks;                  ///< per mesh triangle: the triangle here
-  LargeArray<Vector> vertices;                      ///< in an order of their own
-  LargeArray<std::array<std::int32_t, 3>> corners;  ///< vertices: low, middle, high
+  std::vector<std::int32_t> ranks;  ///< per mesh triangle: the triangle here
+  LargeArray<Vector> vertices;      ///< in an order of their own
+  LargeArray<SheetTriangle> triangles;
   LargeArray<TriangleCrossings> crossings;
   double directed_area = 0;  ///< of the triangles with an orientation
 
   std::int32_t triangle_count() const { return static_cast<std::int32_t>(crossings.size()); }
   bool has_direction(std::int32_t triangle) const { return crossings[triangle].split > 0; }
-  const Vector& low(std::int32_t triangle) const { return vertices[corners[triangle][0]]; }
-  const Vector& middle(std::int32_t triangle) const { return vertices[corners[triangle][1]]; }
-  const Vector& high(std::int32_t triangle) const { return vertices[corners[triangle][2]]; }
+  std::int32_t mesh_triangle(std::int32_t triangle) const { return triangles[triangle].mesh_triangle; }
+  const Vector& low(std::int32_t triangle) const { return vertices[triangles[triangle].low]; }
+  const Vector& middle(std::int32_t triangle) const { return vertices[triangles[triangle].middle]; }
+  const Vector& high(std::int32_t triangle) const { return vertices[triangles[triangle].high]; }
 
   /// Where a chord crosses a side.
   Vector point(std::int32_t triangle, Role role, double chord) const {
