@@ -74,11 +74,19 @@ class SheetMaker {
   }
 
  private:
-  static constexpr std::int32_t measured_ahead = 8;
+  static constexpr std::int32_t read_ahead = 16, written_ahead = 8;
 
-  /// What will soon be written lies scattered.
+  /// What will soon be read and written for some triangles on lies scattered.
   void prefetch(std::int32_t t) const {
-    const auto i = sheet_.ranks[std::min(t, static_cast<std::int32_t>(sheet_.ranks.size()) - 1)];
+    const auto last = static_cast<std::int32_t>(sheet_.ranks.size()) - 1;
+    const auto read = std::min(t + read_ahead, last);
+    for (int k = 0; k < 3; ++k) {
+      const auto vertex = mesh_.triangles()[read][k];
+      __builtin_prefetch(&mesh_.vertices()[vertex]);
+      __builtin_prefetch(&vertex_ranks_[vertex]);
+      __builtin_prefetch(sheet_.ranks.data() + mesh_.neighbour(read, k).triangle);
+    }
+    const auto i = sheet_.ranks[std::min(t + written_ahead, last)];
     __builtin_prefetch(&sheet_.triangles[i], 1);
     __builtin_prefetch(&sheet_.crossings[i], 1);
     __builtin_prefetch(&cosines_[i], 1);
@@ -97,7 +105,7 @@ class SheetMaker {
     Faces faces;
     for (std::int32_t lane = 0; lane < measured_lanes; ++lane) {
       const auto t = first + std::min(lane, count - 1);
-      prefetch(t + measured_ahead);
+      prefetch(t);
       const auto& corners = mesh_.triangles()[t];
       for (int k = 0; k < 3; ++k) faces.corners[k][lane] = &mesh_.vertices()[corners[k]];
       faces.directions[lane] = &field_.directions()[t];
