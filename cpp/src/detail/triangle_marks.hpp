@@ -29,7 +29,7 @@ inline void mark_rings(const LargeArray<TriangleCrossings>& crossings, std::vect
                        TriangleMarks& marks) {
   for (const auto t : front) marks.add(t);
   std::vector<std::int32_t> next;
-  for (int ring = 0; ring < rings; ++ring, front.swap(next)) {
+  for (; rings > 1; --rings, front.swap(next)) {
     next.clear();
     for (const auto t : front) {
       for (const auto other : crossings[t].neighbours) {
@@ -37,6 +37,12 @@ inline void mark_rings(const LargeArray<TriangleCrossings>& crossings, std::vect
         marks.add(other);
         next.push_back(other);
       }
+    }
+  }
+  if (rings < 1) return;
+  for (const auto t : front) {
+    for (const auto other : crossings[t].neighbours) {
+      if (other >= 0) marks.add(other);
     }
   }
 }
