@@ -1,4 +1,4 @@
-"""How the placement scales: against its floor, in triangles, in d_sep, in threads, in memory, on hard cases, polished.
+"""How the placement scales: against its floor, in triangles, d_sep, threads and memory; on hard cases, and polished.
 
 `python benchmarks/engine.py --part NAME` prints one table; see `README.md` for what is measured.
 """
@@ -19,7 +19,7 @@ import numpy as np
 
 from runs import Row, Setup, run_case, streamlines_file
 from scenarios import Scenario, SurfaceSource
-from shapes import HARD_CASES, RECTANGLE_DEGREES
+from shapes import HARD_CASES, HELIX_SLOPES, RECTANGLE_DEGREES
 from surfaces import REPOSITORY, Arrays, SurfaceMissing, read_surface
 from tables import align
 
@@ -56,17 +56,20 @@ class Bench:
         Runs of each row.
     floor_program
         What `floor.cpp` became.
+    seeds
+        Candidates a streamline, for methods that have them, and for the peer.
     """
 
     setup: Setup
     repeats: int
     floor_program: Path
+    seeds: int = 32
 
     def rows(
         self, surface: SurfaceSource, arrays: Arrays, separation: float, methods: Sequence[str], threads: int = 1
     ) -> list[Row]:
-        """Run our methods on a surface."""
-        scenario = Scenario("", "", surface, [separation], list(methods), [32], [threads], self.repeats)
+        """Run our methods on a surface, and the peer if the setup wants it."""
+        scenario = Scenario("", "", surface, [separation], list(methods), [self.seeds], [threads], self.repeats)
         (case,) = scenario.cases()
         rows = run_case(scenario, case, arrays, self.setup)
         for row in rows:
@@ -244,6 +247,29 @@ def print_rectangle(bench: Bench) -> None:
 CHECKED = {"min_separation_surface": "least separation", "coverage": "coverage", "largest_gap": "largest gap"}
 
 
+HELIX_METHODS = [DEFAULT, "longest, seed_clearance=1.005", "longest, polishing_rounds=100"]
+
+
+def print_helices(bench: Bench) -> None:
+    """A torus with helices of many slopes beside the peer with 1000 seeds, which must be there."""
+    bench = replace(bench, setup=replace(bench.setup, with_peer=True), seeds=1000)
+    lines, ratios, seconds = [], [], []
+    for slope in HELIX_SLOPES:
+        surface = SurfaceSource(shape=f"torus, slope {slope}")
+        *ours, peer = bench.rows(surface, read_surface(surface), 1.6, HELIX_METHODS)
+        ratios.append([row.quality["mean_length"] / peer.quality["mean_length"] for row in ours])
+        seconds.append([row.best("cpu") for row in (peer, *ours)])
+        cells = [f"{row.quality['n']:.0f}" for row in (peer, *ours)]
+        lengths = [f"{peer.quality['mean_length']:.1f}", *(f"{ratio:.3f}" for ratio in ratios[-1])]
+        lines.append([f"{slope:g}", *(cell for pair in zip(cells, lengths, strict=True) for cell in pair)])
+    mean_ratios = [f"{ratio:.2f}" for ratio in np.exp(np.log(ratios).mean(axis=0))]
+    lines.append(["geometric mean", "", "", *(cell for ratio in mean_ratios for cell in ("", ratio))])
+    titles = ["slope", "n, peer", "L_avg mm", *(title for method in HELIX_METHODS for title in ("n", method))]
+    print(align(titles, lines, left=1))
+    means = ", ".join(f"{mean:.2g}" for mean in np.mean(seconds, axis=0))
+    print(f"\nMean CPU seconds of the peer and of ours: {means}.")
+
+
 def print_hard(bench: Bench) -> None:
     """Fields and meshes that could be slow, beside the measured surface at the same d_sep/edge."""
     sources = [LA_EPI, *(SurfaceSource(shape=name) for name in HARD_CASES)]
@@ -318,6 +344,7 @@ PARTS: dict[str, Callable[[Bench], None]] = {
     "separation": print_separation,
     "threads": print_threads,
     "rectangle": print_rectangle,
+    "helices": print_helices,
     "hard": print_hard,
     "polishing": print_polishing,
 }

@@ -115,11 +115,13 @@ def _ellipsoid(amplitude: float) -> Shape:
     return vertices, triangles, _turned(vertices, triangles, [0.3, 0.5, 0.8], angles)
 
 
-def _helical_torus(amplitude: float) -> Shape:
-    """Lines that turn round the tube an irrational number of times on their way round."""
+GOLDEN = (1 + 5**0.5) / 2
+
+
+def _helical_torus(mean_slope: float, amplitude: float) -> Shape:
+    """Lines that turn round the tube so many times on their way round, on average."""
     vertices, triangles, angles = _torus(400, 200, 20, 8)
-    golden = (1 + 5**0.5) / 2
-    slope = golden + amplitude * np.sin(angles[:, 0]) * np.cos(2 * angles[:, 1])
+    slope = mean_slope + amplitude * np.sin(angles[:, 0]) * np.cos(2 * angles[:, 1])
     step = 1e-6 * np.column_stack([np.ones(len(angles)), slope])
     return vertices, triangles, (_on_torus(angles + step, 20, 8) - _on_torus(angles - step, 20, 8)) / 2e-6
 
@@ -177,6 +179,7 @@ def _components() -> Shape:
     )
 
 
+HELIX_SLOPES = [round(0.37 + 0.1137 * i, 4) for i in range(20)]
 RECTANGLE_DEGREES = (0, 17, 30, 45, 73, 90)
 HARD_CASES: dict[str, Callable[[], Shape]] = {
     "converging everywhere": lambda: _flat(_convergent),
@@ -190,8 +193,9 @@ HARD_CASES: dict[str, Callable[[], Shape]] = {
 SHAPES: dict[str, Callable[[], Shape]] = {
     "ellipsoid": lambda: _ellipsoid(0),
     "ellipsoid, turned field": lambda: _ellipsoid(0.8),
-    "torus": lambda: _helical_torus(0),
-    "torus, varied field": lambda: _helical_torus(1),
+    "torus": lambda: _helical_torus(GOLDEN, 0),
+    "torus, varied field": lambda: _helical_torus(GOLDEN, 1),
+    **{f"torus, slope {slope}": partial(_helical_torus, slope, 0) for slope in HELIX_SLOPES},
     **{f"rectangle, {degrees} degrees": partial(_constant, degrees) for degrees in RECTANGLE_DEGREES},
     **HARD_CASES,
 }

@@ -287,8 +287,7 @@ void ChordOccupancy::visit_border(Reached reached, const Polyline& line, std::si
     measure_distances(tile);
     if (nearest_capsule(1) > limit) return;
   }
-  const auto& [low, middle, high, mesh_triangle] = sheet_.triangles[reached.triangle];
-  for (const auto v : {low, middle, high}) __builtin_prefetch(&sheet_.vertices[v]);
+  sheet_.prefetch_corners(reached.triangle);
   reached.distance = std::min(reached.distance, coarse + error);
   reach_neighbours(reached);
   mark_in(reached, stops(), line, first);

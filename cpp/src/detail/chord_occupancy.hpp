@@ -137,9 +137,7 @@ class ChordOccupancy {
   int choose_capsules(std::int32_t triangle, const Marking& marking);
   void mark_exactly(std::int32_t triangle, const Polyline& line, std::size_t first, const Marking& marking);
   double greatest_clearance() const { return std::max(clearance_.stop, clearance_.seed); }
-  double separation(std::int32_t triangle) const {
-    return tracer_.separation_distance(sheet_.mesh_triangle(triangle));
-  }
+  double separation(std::int32_t triangle) const { return tracer_.separation_distance(sheet_.mesh_triangle(triangle)); }
 
   const SurfaceMesh& mesh_;
   const StreamlineTracer& tracer_;

@@ -64,9 +64,7 @@ class EndExtender {
   Vector point(std::int64_t index) const { return vector(placement_.points[index]); }
   std::int64_t first_point(std::size_t line) const { return placement_.offsets[line]; }
   std::int64_t last_point(std::size_t line) const { return placement_.offsets[line + 1] - 1; }
-  double separation(std::int32_t triangle) const {
-    return tracer_.separation_distance(sheet_.mesh_triangle(triangle));
-  }
+  double separation(std::int32_t triangle) const { return tracer_.separation_distance(sheet_.mesh_triangle(triangle)); }
   std::int32_t mesh_triangle(const Extension& extension) const {
     return sheet_.mesh_triangle(extension.chord.triangle());
   }

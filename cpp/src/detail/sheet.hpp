@@ -34,6 +34,10 @@ struct Sheet {
   const Vector& middle(std::int32_t triangle) const { return vertices[triangles[triangle].middle]; }
   const Vector& high(std::int32_t triangle) const { return vertices[triangles[triangle].high]; }
 
+  void prefetch_corners(std::int32_t triangle) const {
+    for (const auto* corner : {&low(triangle), &middle(triangle), &high(triangle)}) __builtin_prefetch(corner);
+  }
+
   /// Where a chord crosses a side.
   Vector point(std::int32_t triangle, Role role, double chord) const {
     const Vector& from = role == middle_high ? middle(triangle) : low(triangle);
