@@ -53,7 +53,7 @@ def method_options(text: str) -> dict[str, Any]:
     method, *others = (part.strip() for part in text.split(","))
     options: dict[str, Any] = {"method": method}
     for name, value in (other.split("=") for other in others):
-        options[name] = value if name == "occupancy" else float(value)
+        options[name] = value if name == "occupancy" else json.loads(value)
     return options
 
 

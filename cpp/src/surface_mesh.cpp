@@ -7,6 +7,7 @@
 #include "detail/boundary_loops.hpp"
 #include "detail/large_array.hpp"
 #include "detail/orient.hpp"
+#include "detail/scratch.hpp"
 #include "detail/topology.hpp"
 #include "detail/triangle_soup.hpp"
 #include "detail/vec.hpp"

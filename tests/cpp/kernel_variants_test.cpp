@@ -2,10 +2,13 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <span>
+#include <vector>
 
 #include "detail/chord_measures.hpp"
 #include "detail/chord_shadow.hpp"
@@ -27,6 +30,10 @@ namespace segment_variants {
 #define PECTINATE_KERNEL "detail/segments_lanes.inl"
 #include "detail/kernel_variants.inl"
 }  // namespace segment_variants
+namespace triangle_variants {
+#define PECTINATE_KERNEL "detail/triangle_measures_lanes.inl"
+#include "detail/kernel_variants.inl"
+}  // namespace triangle_variants
 
 #ifdef PECTINATE_HAS_VARIANTS
 namespace {
@@ -99,6 +106,26 @@ TEST_CASE("kernels: the same bytes on any processor, for chords' measures") {
     along_sides |= measures.along_sides;
   }
   CHECK(along_sides == 15);
+}
+
+TEST_CASE("kernels: the same bytes on any processor, for areas and volumes") {
+  if (!__builtin_cpu_supports("avx2")) return;
+  Random random(14);
+  for (std::size_t count = 1; count < 40; ++count) {
+    std::vector<Vec3> vertices(30);
+    for (auto& vertex : vertices) vertex = vec3(draw_vector(random));
+    std::vector<Triangle> triangles(count);
+    for (auto& triangle : triangles) {
+      for (auto& corner : triangle) corner = static_cast<std::int32_t>(random.below(vertices.size()));
+    }
+    std::vector<double> areas(count), others(count);
+    triangle_variants::any_processor::measure_areas(vertices.data(), triangles, areas.data());
+    triangle_variants::with_avx2::measure_areas(vertices.data(), triangles, others.data());
+    CHECK(std::memcmp(areas.data(), others.data(), count * sizeof(double)) == 0);
+    const Vec3 apex = vec3(draw_vector(random));
+    CHECK(same_bytes(triangle_variants::any_processor::measure_volume(vertices.data(), triangles, apex),
+                     triangle_variants::with_avx2::measure_volume(vertices.data(), triangles, apex)));
+  }
 }
 
 TEST_CASE("kernels: the same bytes on any processor, for distances and choices") {

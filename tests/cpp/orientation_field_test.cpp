@@ -3,7 +3,9 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include "fields.hpp"
 #include "pectinate/errors.hpp"
@@ -90,6 +92,22 @@ TEST_CASE("field: the direction is the projection of the input, which is tilted 
     const Vector expected = (unit - unit.dot(normal) * normal).normalized();
     CHECK(line_angle(vector(field.directions()[t]), expected) < 1e-12);
     CHECK(field.out_of_plane_angles()[t] == doctest::Approx(std::asin(std::abs(unit.dot(normal)))).epsilon(1e-9));
+  }
+}
+
+TEST_CASE("field: small out-of-plane angles are right to the last bits") {
+  const auto mesh = jittered_grid(20, 20).mesh();
+  Random random(9);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<Vec3> vectors(mesh.input_triangle_count());
+    // In some rounds all are so small that they are computed in another way, in others some.
+    for (auto& vector : vectors) vector = {1, 0, std::pow(10, -3 - 9 * random.unit() - (round % 2 == 0 ? 3 : 0))};
+    const auto field = OrientationField::from_triangle_vectors(mesh, vectors);
+    for (std::size_t t = 0; t < vectors.size(); ++t) {
+      const double expected = std::atan(vectors[t][2]);
+      CHECK(std::abs(field.out_of_plane_angles()[t] - expected) <=
+            4 * std::numeric_limits<double>::epsilon() * expected);
+    }
   }
 }
 

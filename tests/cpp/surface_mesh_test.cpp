@@ -4,7 +4,9 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <string>
 
@@ -227,6 +229,40 @@ TEST_CASE("mesh: a Moebius strip's border belongs to it, wherever its seam begin
     REQUIRE(mesh.boundary_loops().size() == 1);
     CHECK(mesh.boundary_loops()[0].component == 0);
     CHECK(mesh.components()[0].boundary_loop_count == 1);
+  }
+}
+
+TEST_CASE("mesh: vertices of few and of many triangles are joined alike") {
+  for (const bool is_apex_first : {true, false}) {
+    for (std::int32_t count = 3; count <= 40; ++count) {
+      CAPTURE(count);
+      const std::int32_t apex = is_apex_first ? 0 : count, first = is_apex_first ? 1 : 0;
+      Soup cone;
+      cone.vertices.resize(count + 1, {0, 0, 1});
+      for (std::int32_t i = 0; i < count; ++i) {
+        const double angle = 2 * std::numbers::pi * i / count;
+        cone.vertices[first + i] = {std::cos(angle), std::sin(angle), 0};
+        cone.triangles.push_back({apex, first + i, first + (i + 1) % count});
+      }
+      for (const auto& soup : {cone, tumbled(cone, count)}) {
+        const auto mesh = checked(soup);
+        CHECK(mesh.edges().size() == 2 * static_cast<std::size_t>(count));
+        REQUIRE(mesh.boundary_loops().size() == 1);
+        CHECK(mesh.boundary_loops()[0].vertices.size() == static_cast<std::size_t>(count));
+      }
+    }
+  }
+}
+
+TEST_CASE("mesh: of any number of vertices that nothing uses") {
+  for (const std::size_t count : {1, 2000, 3000000}) {
+    auto soup = one_triangle();
+    const auto used = soup.vertices.size();
+    soup.vertices.resize(used + count, {7, 8, 9});
+    const auto mesh = soup.mesh();
+    CHECK(mesh.vertices().size() == used);
+    CHECK(mesh.repairs().unreferenced_vertices.size() == count);
+    CHECK(mesh.area() == one_triangle().mesh().area());
   }
 }
 

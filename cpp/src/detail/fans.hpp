@@ -60,8 +60,8 @@ void visit_fan(const Neighbours& neighbours, const Corner& start, const Visit& v
   }
 }
 
-/// Do the triangles at each vertex form one fan? No two of them may have the same corners. Told are all triangles at a
-/// border.
+/// Do the triangles at each vertex form one fan? No two of them may have the same corners. `border_triangles` has
+/// all triangles with a side at a border; others do no harm.
 bool has_one_fan_everywhere(const std::vector<Triangle>& triangles, const Neighbours& neighbours,
                             const std::vector<std::int32_t>& border_triangles, std::size_t vertex_count,
                             Scratch& scratch);

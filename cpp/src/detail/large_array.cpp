@@ -2,20 +2,21 @@
 #include "detail/large_array.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <iterator>
 
 #ifdef __linux__
 #include <sys/mman.h>
 #include <unistd.h>
 
 #include <array>
-#include <cstdint>
 #endif
 
 namespace pectinate::detail {
 namespace {
 
 #ifdef __linux__
-constexpr std::size_t large_page = std::size_t{1} << 21;
 /// The system's numbers of MADV_POPULATE_WRITE and MADV_COLLAPSE, which older headers lack.
 constexpr int populate = 23, collapse = 25;
 
@@ -34,8 +35,9 @@ void advise(void* memory, std::size_t size, std::size_t page, int advice) {
 /// Is next to nothing of a large page there yet?
 bool is_untouched(void* page) {
   std::array<unsigned char, 512> is_there{};
-  if (large_page / small_page() > is_there.size() || mincore(page, large_page, is_there.data()) != 0) return false;
-  return std::ranges::count_if(is_there, [](auto flags) { return flags & 1; }) < 64;
+  const auto small_pages = static_cast<std::ptrdiff_t>(large_page / small_page());
+  if (small_pages > std::ssize(is_there) || mincore(page, large_page, is_there.data()) != 0) return false;
+  return 8 * std::ranges::count_if(is_there, [](auto flags) { return flags & 1; }) < small_pages;
 }
 
 #endif
@@ -65,17 +67,18 @@ void back_with_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t
 }
 
 void back_together(std::vector<std::span<std::byte>> rooms) {
-  constexpr std::ptrdiff_t greatest_gap = 8192;  // of what the system and the allocator put between two
+  constexpr std::uintptr_t greatest_gap = 8192;  // of what the system and the allocator put between two
+  const auto begin_of = [&](std::size_t i) { return reinterpret_cast<std::uintptr_t>(rooms[i].data()); };
+  const auto end_of = [&](std::size_t i) { return begin_of(i) + rooms[i].size(); };
   std::erase_if(rooms, [](const auto& room) { return room.empty(); });
-  std::ranges::sort(rooms, {}, [](const auto& room) { return room.data(); });
+  std::ranges::sort(rooms, std::less{}, [](const auto& room) { return room.data(); });
   for (std::size_t first = 0, last = 0; first < rooms.size(); first = last) {
-    const auto end_of = [&](std::size_t i) { return rooms[i].data() + rooms[i].size(); };
-    for (++last; last < rooms.size() && rooms[last].data() - end_of(last - 1) <= greatest_gap;) ++last;
-    const std::size_t size = end_of(last - 1) - rooms[first].data();
+    for (++last; last < rooms.size() && begin_of(last) - end_of(last - 1) <= greatest_gap;) ++last;
+    const auto size = static_cast<std::size_t>(end_of(last - 1) - begin_of(first));
     prefer_large_pages(rooms[first].data(), size);
     make_large_pages(rooms[first].data(), size);
-    back_with_pages(rooms[first].data(), size);
   }
+  for (const auto& room : rooms) back_with_pages(room.data(), room.size());
 }
 
 }  // namespace pectinate::detail

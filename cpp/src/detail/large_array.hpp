@@ -9,6 +9,9 @@
 
 namespace pectinate::detail {
 
+/// What systems call large or huge, as a rule.
+inline constexpr std::size_t large_page = std::size_t{1} << 21;
+
 /// Asks the system to back what whole large pages lie in this memory by such; a hint.
 void prefer_large_pages(void* memory, std::size_t size);
 
@@ -16,21 +19,13 @@ void prefer_large_pages(void* memory, std::size_t size);
 /// is written first, takes longer.
 void back_with_pages(void* memory, std::size_t size);
 
-/// An empty vector with room for so many elements, all or nearly all of which there will be; in large pages where it
-/// fills such.
+/// So many equal elements; in large pages where they fill such.
 template <class T>
-std::vector<T> roomy_vector(std::size_t count) {
+std::vector<T> roomy_vector(std::size_t count, const T& value) {
   std::vector<T> result;
   result.reserve(count);
   prefer_large_pages(result.data(), count * sizeof(T));
   back_with_pages(result.data(), count * sizeof(T));
-  return result;
-}
-
-/// The same, filled with a value.
-template <class T>
-std::vector<T> roomy_vector(std::size_t count, const T& value) {
-  auto result = roomy_vector<T>(count);
   result.resize(count, value);
   return result;
 }
@@ -58,12 +53,12 @@ class LargePageAllocator {
   explicit LargePageAllocator(const LargePageAllocator<U>&) {}
 
   T* allocate(std::size_t count) {
-    const auto size = size_of(count);
+    const auto size = count * sizeof(T);
     void* memory = ::operator new(size, alignment(size));
     if (size >= large_page) prefer_large_pages(memory, size);
     return static_cast<T*>(memory);
   }
-  void deallocate(T* memory, std::size_t count) { ::operator delete(memory, alignment(size_of(count))); }
+  void deallocate(T* memory, std::size_t count) { ::operator delete(memory, alignment(count * sizeof(T))); }
 
   /// Elements without a value are left as the memory is: to write it twice costs as much as to compute them.
   template <class U>
@@ -78,13 +73,8 @@ class LargePageAllocator {
   bool operator==(const LargePageAllocator&) const = default;
 
  private:
-  static constexpr std::size_t large_page = std::size_t{1} << 21, cache_line = 64;
+  static constexpr std::size_t cache_line = 64;
 
-  /// A large page that would be filled by half is taken whole: it costs less than so many small ones.
-  static std::size_t size_of(std::size_t count) {
-    const auto size = count * sizeof(T), rest = size % large_page;
-    return rest < large_page / 2 ? size : size - rest + large_page;
-  }
   static std::align_val_t alignment(std::size_t size) {
     return std::align_val_t{size >= large_page ? large_page : cache_line};
   }
@@ -102,13 +92,6 @@ LargeArray<T> large_array(std::size_t count) {
   back_with_pages(result.data(), count * sizeof(T));
   result.resize(count);
   return result;
-}
-
-/// How many elements, not less than so many, fill large pages to the last; of less than a large page, as many.
-template <class T>
-constexpr std::size_t fill_large_pages(std::size_t count) {
-  constexpr std::size_t page = (std::size_t{1} << 21) / sizeof(T);
-  return count < page ? count : (count + page - 1) / page * page;
 }
 
 }  // namespace pectinate::detail

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <span>
 
 #include "detail/triangle_measures.hpp"
 #include "detail/vec.hpp"

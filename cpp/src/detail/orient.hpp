@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "detail/fans.hpp"
+#include "detail/scratch.hpp"
 #include "pectinate/surface_mesh.hpp"
 
 namespace pectinate::detail {

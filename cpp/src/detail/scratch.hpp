@@ -13,18 +13,15 @@ namespace pectinate::detail {
 /// Memory for one step after the other: what was touched once costs nothing again.
 class Scratch {
  public:
-  explicit Scratch(std::size_t size) : memory_(large_array<std::byte>(fill_large_pages<std::byte>(size))) {}
+  explicit Scratch(std::size_t size) : memory_(large_array<std::byte>(size)) {}
 
   /// Valid until the next step. Without values.
   template <class T>
   std::span<T> array(std::size_t count) {
     const auto first = (used_ + alignment - 1) / alignment * alignment;
-    auto* begin = memory_.data() + first;
-    if (first + count * sizeof(T) <= memory_.size()) {
-      used_ = first + count * sizeof(T);
-    } else {
-      begin = more_.emplace_back(count * sizeof(T)).data();
-    }
+    const bool has_room = first + count * sizeof(T) <= memory_.size();
+    if (has_room) used_ = first + count * sizeof(T);
+    auto* const begin = has_room ? memory_.data() + first : more_.emplace_back(count * sizeof(T)).data();
     return {reinterpret_cast<T*>(begin), count};
   }
   template <class T>

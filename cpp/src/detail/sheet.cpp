@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <utility>
 
 #include "detail/chord_measures.hpp"
@@ -84,7 +85,7 @@ class SheetMaker {
       const auto vertex = mesh_.triangles()[read][k];
       __builtin_prefetch(&mesh_.vertices()[vertex]);
       __builtin_prefetch(&vertex_ranks_[vertex]);
-      __builtin_prefetch(sheet_.ranks.data() + mesh_.neighbour(read, k).triangle);
+      __builtin_prefetch(&sheet_.ranks[std::max(mesh_.neighbour(read, k).triangle, 0)]);
     }
     const auto i = sheet_.ranks[std::min(t + written_ahead, last)];
     __builtin_prefetch(&sheet_.triangles[i], 1);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 #include <span>
+#include <utility>
 
 #include "detail/fans.hpp"
 
@@ -28,7 +29,7 @@ struct LowSide {
   bool operator<(const LowSide& other) const { return code < other.code; }
 };
 
-/// So many sides ahead of its turn what will be written of a side is fetched; behind the last one lie as many dummies.
+/// What will be written of a side is fetched so many sides ahead; as many dummies follow the last one.
 constexpr std::size_t fetched_ahead = 64;
 
 /// Puts two in order. Without a branch, because wrong guesses would cost more.
@@ -92,10 +93,10 @@ class SidesByEnds {
   std::span<LowSide> sides_;
 };
 
-/// What is stored for a side of such a number: rows lie one behind the other.
+/// What is stored for a side of such a number.
 template <class T>
 T& at_side(std::vector<std::array<T, 3>>& rows, std::int32_t number) {
-  return rows.data()->data()[number - (number >> 2)];
+  return rows[number >> 2][number & 3];
 }
 
 void join_sides(std::int32_t a, std::int32_t b, bool run_alike, Topology& topology) {
@@ -118,7 +119,7 @@ class EdgeMaker {
 
   /// All from one vertex. The sides that leave it and those that arrive lie behind each other in memory.
   void add(std::int32_t low, std::span<LowSide> leaving, std::span<LowSide> arriving) {
-    make_room(leaving.size() + arriving.size());
+    make_place(leaving.size() + arriving.size());
     if (leaving.size() == arriving.size() && add_pairs(low, leaving, arriving)) return;
     for (auto& side : leaving) side.mark_as_leaving();
     const std::span<LowSide> sides{leaving.data(), arriving.data() + arriving.size()};
@@ -140,7 +141,7 @@ class EdgeMaker {
   }
 
  private:
-  void make_room(std::size_t count) {
+  void make_place(std::size_t count) {
     if (count_ + count <= topology_.edges.size()) return;
     topology_.edges.resize(2 * (count_ + count));
     topology_.edge_sides.resize(2 * (count_ + count));
@@ -236,9 +237,9 @@ Topology join_triangles(const TriangleSoup& soup, Topology room, Scratch& scratc
 }
 
 std::size_t scratch_size(std::size_t vertex_count, std::size_t triangle_count) {
-  constexpr std::size_t alignment = 128;
+  constexpr std::size_t lost_between = 128;
   return (2 * vertex_count + 1) * sizeof(std::int32_t) + (3 * triangle_count + fetched_ahead) * sizeof(LowSide) +
-         alignment;
+         lost_between;
 }
 
 std::vector<std::int32_t> likely_repetitions(const Topology& topology) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "detail/scratch.hpp"
 #include "detail/triangle_soup.hpp"
 
 namespace pectinate::detail {
@@ -23,7 +24,8 @@ struct Topology {
                                          ///< number in cut_edges
   std::vector<CutEdge> cut_edges;
   std::vector<std::array<PackedNeighbour, 3>> neighbours;
-  std::vector<std::int32_t> border_triangles;  ///< in ascending order, all with a side that no other is joined to
+  std::vector<std::int32_t> border_triangles;  ///< in ascending order: all with a side that no other is
+                                               ///< joined to, and after `rejoin_slits` some more
 };
 
 /// How many edges there are, at most, on nearly every surface: half the sides, those at borders and cuts once more.
@@ -34,7 +36,7 @@ inline std::size_t likely_edge_count(std::size_t vertex_count, std::size_t trian
 /// Joins the sides of every edge that has two triangles. Edges with more are cut open. Uses another topology's room.
 Topology join_triangles(const TriangleSoup& soup, Topology room, Scratch& scratch);
 
-/// What joining takes of it, which is more than what any other step of making a mesh takes.
+/// What joining takes of it: more than what any other step of making a mesh does, if most vertices are used.
 std::size_t scratch_size(std::size_t vertex_count, std::size_t triangle_count);
 
 /// Every triangle that may have the same corners as another, in ascending order: such ones share all three edges.

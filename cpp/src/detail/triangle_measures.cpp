@@ -6,13 +6,6 @@
 #include <limits>
 
 namespace pectinate::detail {
-namespace {
-
-/// Below this height over the longest side a triangle has no usable plane in double precision.
-constexpr double least_relative_height = 1e-8;
-
-}  // namespace
-
 #define PECTINATE_KERNEL "detail/triangle_measures_lanes.inl"
 #include "detail/kernel_variants.inl"
 

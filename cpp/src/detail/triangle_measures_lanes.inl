@@ -3,6 +3,9 @@
 
 #include "detail/lane_triangles.inl"
 
+/// Below this height over the longest side a triangle has no usable plane in double precision.
+constexpr double least_relative_height = 1e-8;
+
 inline void measure_areas(const Vec3* vertices, std::span<const Triangle> triangles, double* areas) {
   for (std::size_t first = 0; first < triangles.size(); first += doubles) {
     const auto [a, b, c] = gather_triangles(vertices, triangles, first);
