@@ -36,6 +36,17 @@ namespace triangle_variants {
 }  // namespace triangle_variants
 
 #ifdef PECTINATE_HAS_VARIANTS
+/// Does something with each variant that this processor can run, but for any_processor.
+#define FOR_EACH_VARIANT(kernel, ...)          \
+  if (kernel::has_avx2) {                      \
+    namespace variant = kernel::with_avx2;     \
+    __VA_ARGS__                                \
+  }                                            \
+  if (kernel::has_avx512) {                    \
+    namespace variant = kernel::with_avx512;   \
+    __VA_ARGS__                                \
+  }
+
 namespace {
 
 Vector draw_vector(Random& random) {
@@ -55,7 +66,6 @@ bool same_bits(const SegmentsNear& a, const SegmentsNear& b) {
 }  // namespace
 
 TEST_CASE("kernels: the same bytes on any processor, for shadows and cores") {
-  if (!__builtin_cpu_supports("avx2")) return;
   Random random(11);
   int some = 0;
   for (int round = 0; round < 20000; ++round) {
@@ -72,16 +82,17 @@ TEST_CASE("kernels: the same bytes on any processor, for shadows and cores") {
       questions.radius[lane] = random.unit();
     }
     const auto shadows = shadow_variants::any_processor::chord_shadows(questions);
-    CHECK(same_bytes(shadows, shadow_variants::with_avx2::chord_shadows(questions)));
     const auto cores = shadow_variants::any_processor::chord_cores(questions);
-    CHECK(same_bytes(cores, shadow_variants::with_avx2::chord_cores(questions)));
+    FOR_EACH_VARIANT(shadow_variants, {
+      CHECK(same_bytes(shadows, variant::chord_shadows(questions)));
+      CHECK(same_bytes(cores, variant::chord_cores(questions)));
+    });
     for (int lane = 0; lane < shadow_lanes; ++lane) some += shadows.chords.low[lane] <= shadows.chords.high[lane];
   }
   CHECK(some > 20000);
 }
 
 TEST_CASE("kernels: the same bytes on any processor, for chords' measures") {
-  if (!__builtin_cpu_supports("avx2")) return;
   Random random(13);
   const auto draw = [&] { return vec3(draw_vector(random).normalized()); };
   unsigned along_sides = 0;
@@ -96,20 +107,21 @@ TEST_CASE("kernels: the same bytes on any processor, for chords' measures") {
       faces.directions[lane] = &direction;
     }
     const auto measures = measure_variants::any_processor::measure_chords(faces);
-    const auto others = measure_variants::with_avx2::measure_chords(faces);
-    CHECK(same_bytes(measures.cosine, others.cosine));
-    CHECK(same_bytes(measures.middle, others.middle));
-    CHECK(same_bytes(measures.split, others.split));
-    CHECK(same_bytes(measures.longest_chord, others.longest_chord));
-    CHECK(same_bytes(measures.width, others.width));
-    CHECK(measures.along_sides == others.along_sides);
+    FOR_EACH_VARIANT(measure_variants, {
+      const auto others = variant::measure_chords(faces);
+      CHECK(same_bytes(measures.cosine, others.cosine));
+      CHECK(same_bytes(measures.middle, others.middle));
+      CHECK(same_bytes(measures.split, others.split));
+      CHECK(same_bytes(measures.longest_chord, others.longest_chord));
+      CHECK(same_bytes(measures.width, others.width));
+      CHECK(measures.along_sides == others.along_sides);
+    });
     along_sides |= measures.along_sides;
   }
   CHECK(along_sides == 15);
 }
 
 TEST_CASE("kernels: the same bytes on any processor, for areas and volumes") {
-  if (!__builtin_cpu_supports("avx2")) return;
   Random random(14);
   for (std::size_t count = 1; count < 40; ++count) {
     std::vector<Vec3> vertices(30);
@@ -118,18 +130,19 @@ TEST_CASE("kernels: the same bytes on any processor, for areas and volumes") {
     for (auto& triangle : triangles) {
       for (auto& corner : triangle) corner = static_cast<std::int32_t>(random.below(vertices.size()));
     }
+    const Vec3 apex = vec3(draw_vector(random));
     std::vector<double> areas(count), others(count);
     triangle_variants::any_processor::measure_areas(vertices.data(), triangles, areas.data());
-    triangle_variants::with_avx2::measure_areas(vertices.data(), triangles, others.data());
-    CHECK(std::memcmp(areas.data(), others.data(), count * sizeof(double)) == 0);
-    const Vec3 apex = vec3(draw_vector(random));
-    CHECK(same_bytes(triangle_variants::any_processor::measure_volume(vertices.data(), triangles, apex),
-                     triangle_variants::with_avx2::measure_volume(vertices.data(), triangles, apex)));
+    const double volume = triangle_variants::any_processor::measure_volume(vertices.data(), triangles, apex);
+    FOR_EACH_VARIANT(triangle_variants, {
+      variant::measure_areas(vertices.data(), triangles, others.data());
+      CHECK(std::memcmp(areas.data(), others.data(), count * sizeof(double)) == 0);
+      CHECK(same_bytes(volume, variant::measure_volume(vertices.data(), triangles, apex)));
+    });
   }
 }
 
 TEST_CASE("kernels: the same bytes on any processor, for distances and choices") {
-  if (!__builtin_cpu_supports("avx2")) return;
   Random random(12);
   unsigned near = 0, before = 0, beyond = 0;
   for (int round = 0; round < 5000; ++round) {
@@ -139,16 +152,19 @@ TEST_CASE("kernels: the same bytes on any processor, for distances and choices")
       segments.add(draw_vector(random), 0.3 * draw_vector(random), static_cast<float>(random.unit()));
     }
     segments.fill_up();
-    auto other = segments;
     const auto point = float_point(draw_vector(random));
-    CHECK(segment_variants::any_processor::distance(segments, point) ==
-          segment_variants::with_avx2::distance(other, point));
-    CHECK(same_bytes(segments.square, other.square));
+    const float distance = segment_variants::any_processor::distance(segments, point);
+    FOR_EACH_VARIANT(segment_variants, {
+      auto others = segments;
+      others.square.fill(0);
+      CHECK(variant::distance(others, point) == distance);
+      CHECK(same_bytes(segments.square, others.square));
+    });
     const auto corner = [&] { return float_point(0.2 * draw_vector(random)); };
     const TriangleQuestion question{{corner(), corner(), corner()}, 0.1F, 0.7F, 1e-6F};
     for (int group = 0; group < count; group += Segments::group_size) {
       const auto found = segment_variants::any_processor::segments_near(segments, group, question);
-      CHECK(same_bits(found, segment_variants::with_avx2::segments_near(segments, group, question)));
+      FOR_EACH_VARIANT(segment_variants, CHECK(same_bits(found, variant::segments_near(segments, group, question))););
       near |= found.are_near;
       before |= found.lie_before;
       beyond |= found.lie_beyond;
