@@ -2,7 +2,7 @@
 // Compiles the file PECTINATE_KERNEL three times: in the namespace any_processor for registers of 16 bytes, which all
 // have, in with_avx2 for those of 32, and in with_avx512 for twice as many of these and others for masks; registers of 64
 // bytes gain nothing more. PECTINATE_CALL_KERNEL(f, arguments) calls the one that suits the processor at hand. All give
-// the same bits: they do the same to each number.
+// the same bits: they do the same to each number, as long as the compiler fuses no multiplication with an addition.
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define PECTINATE_HAS_VARIANTS

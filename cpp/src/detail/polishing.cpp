@@ -22,6 +22,9 @@ constexpr double share_of_supports = 0.4, share_of_resting = 0.5;
 /// In mean lengths: to trace longer lines again takes long and gains little. Of a line that is to grow and what it
 /// rests on, together, and of lines that rest on others.
 constexpr double longest_to_grow = 5, longest_resting = 4;
+/// Share of the rounds in which a line much longer than the others, in mean lengths, gives way at one end; how much of
+/// it at most, in mean lengths, and of all of it.
+constexpr double share_of_giving_way = 0.3, least_to_give_way = 5, most_given = 3, most_given_of_all = 0.5;
 /// Ends that lost what they rested on are mended so many times, or the round is undone.
 constexpr int most_mendings = 8;
 /// So many times as many lines as there are may be replaced without getting better, before it goes back to the best.
@@ -31,6 +34,11 @@ constexpr double least_gain = 1e-9, least_uncovered = 1e-7;
 
 bool contains(const std::vector<std::int32_t>& lines, std::int32_t line) {
   return std::ranges::find(lines, line) != lines.end();
+}
+
+ChordPlace middle_of(std::span<const Chord> chords) {
+  const auto& chord = chords[chords.size() / 2];
+  return {chord.triangle(), chord.coordinate};
 }
 
 void add_once(std::int32_t line, std::vector<std::int32_t>& lines) {
@@ -104,7 +112,7 @@ void Polisher::play_round() {
   free_before_ = 0;
   uncovered_before_ = centres_.uncovered_area();
   ++round_;
-  replace(choose(), first_, true);
+  if (!let_long_line_give_way()) replace(choose(), first_, true);
   const bool is_whole = mend_loose_ends();
   auto change = finished_change();
   const auto effect = effect_of(change);
@@ -135,7 +143,7 @@ std::vector<std::int32_t> Polisher::choose_to_grow() {
   double length = 0;
   for (const auto one : chosen) length += lines_[one].length;
   if (length > longest_to_grow * mean_length()) return {};
-  first_.push_back(middle_of(line));
+  first_.push_back(middle_of(lines_[line].chords));
   return chosen;
 }
 
@@ -181,21 +189,70 @@ bool Polisher::rests_on(std::int32_t line, std::int32_t triangle, const Numbers&
   });
 }
 
+/// Longer lines more often.
+std::int32_t Polisher::draw_by_length() {
+  double rest = random_.unit() * total_length_;
+  for (const auto line : lines_.present()) {
+    rest -= lines_[line].length;
+    if (rest < 0) return line;
+  }
+  return lines_.present().back();
+}
+
 // Repair --------------------------------------------------------------------------------------------------------------
 
-/// Takes lines out and fills what they leave.
-void Polisher::replace(const Numbers& lines, std::vector<ChordPlace> first, bool at_random) {
+/// Takes lines out; the region that they leave.
+FreedRegion Polisher::free(const Numbers& lines, std::vector<ChordPlace> first, bool at_random) {
   for (const auto line : lines) {
     note_free(line);
     lines_.take_out(line);
     taken_out_.push_back(line);
   }
   centres_.take_back(lines);
-  FreedRegion region{layers_.take_back(lines), std::move(first), [&](const Interval& gap) {
-                       const double share = at_random ? random_.unit() : 0.5;
-                       return gap.low + share * (gap.high - gap.low);
-                     }};
+  return {layers_.take_back(lines), std::move(first), [this, at_random](const Interval& gap) {
+            const double share = at_random ? random_.unit() : 0.5;
+            return gap.low + share * (gap.high - gap.low);
+          }};
+}
+
+/// Takes lines out and fills what they leave.
+void Polisher::replace(const Numbers& lines, std::vector<ChordPlace> first, bool at_random) {
+  filler_.refill(free(lines, std::move(first), at_random));
+}
+
+/// Where one line is much longer than the others, these are what is left beside it: it leaves an end to them and to
+/// what may grow there, and comes back when they are there. False if no such line was drawn.
+bool Polisher::let_long_line_give_way() {
+  if (random_.unit() >= share_of_giving_way) return false;
+  const auto line = draw_by_length();
+  const double length = lines_[line].length;
+  if (lines_[line].is_closed || length < least_to_give_way * mean_length()) return false;
+  const auto kept = without_end(line, random_.unit() * std::min(most_given * mean_length(), most_given_of_all * length));
+  if (kept.empty()) return false;
+  const ChordPlace middle = middle_of(kept);
+  Numbers chosen{line};
+  choose_resting(chosen);
+  auto region = free(chosen, {}, true);
+  const auto place_holder = lines_.new_number();
+  Polyline polyline;
+  polyline.follow(sheet_, kept, false);
+  layers_.add(place_holder, polyline);
   filler_.refill(region);
+  layers_.take_back(Numbers{place_holder});
+  lines_.forget(place_holder);
+  region.first = {middle};
+  filler_.refill(region);
+  return true;
+}
+
+/// The chords of a line but for so much of it at one of its ends.
+std::vector<Chord> Polisher::without_end(std::int32_t line, double length) {
+  auto chords = lines_[line].chords;
+  const bool at_first = random_.below(2) == 0;
+  if (at_first) std::ranges::reverse(chords);
+  for (; length > 0 && !chords.empty(); chords.pop_back()) length -= chords.back().length;
+  if (at_first) std::ranges::reverse(chords);
+  return chords;
 }
 
 /// Before a line is taken out. Where lines placed in this round lie already, that may count too little.
@@ -219,7 +276,7 @@ bool Polisher::mend_loose_ends() {
     const auto loose = loose_lines();
     if (loose.empty()) return true;
     std::vector<ChordPlace> first;
-    for (const auto line : loose) first.push_back(middle_of(line));
+    for (const auto line : loose) first.push_back(middle_of(lines_[line].chords));
     replace(loose, std::move(first), false);
   }
   return false;
@@ -238,10 +295,6 @@ std::vector<std::int32_t> Polisher::loose_lines() const {
   return loose;
 }
 
-ChordPlace Polisher::middle_of(std::int32_t line) const {
-  const auto& chord = lines_[line].chords[lines_[line].chords.size() / 2];
-  return {chord.triangle(), chord.coordinate};
-}
 
 // Acceptance ----------------------------------------------------------------------------------------------------------
 

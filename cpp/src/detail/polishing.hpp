@@ -50,10 +50,13 @@ class Polisher {
   void choose_resting(Numbers& chosen);
   std::int32_t draw_line() { return lines_.present()[random_.below(lines_.present().size())]; }
   std::int32_t draw_short_line();
-  ChordPlace middle_of(std::int32_t line) const;
+  std::int32_t draw_by_length();
   bool rests_on(std::int32_t line, std::int32_t triangle, const Numbers& supports) const;
 
+  FreedRegion free(const Numbers& lines, std::vector<ChordPlace> first, bool at_random);
   void replace(const Numbers& lines, std::vector<ChordPlace> first, bool at_random);
+  bool let_long_line_give_way();
+  std::vector<Chord> without_end(std::int32_t line, double length);
   bool mend_loose_ends();
   Numbers loose_lines() const;
 
