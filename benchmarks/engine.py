@@ -247,7 +247,12 @@ def print_rectangle(bench: Bench) -> None:
 CHECKED = {"min_separation_surface": "least separation", "coverage": "coverage", "largest_gap": "largest gap"}
 
 
-HELIX_METHODS = [DEFAULT, "longest, seed_clearance=1.005", "longest, polishing_rounds=100"]
+HELIX_METHODS = [
+    DEFAULT,
+    "longest, seed_clearance=1.005",
+    "longest, polishing_rounds=40",
+    "longest, polishing_rounds=100",
+]
 
 
 def print_helices(bench: Bench) -> None:

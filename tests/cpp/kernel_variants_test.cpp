@@ -37,14 +37,14 @@ namespace triangle_variants {
 
 #ifdef PECTINATE_HAS_VARIANTS
 /// Does something with each variant that this processor can run, but for any_processor.
-#define FOR_EACH_VARIANT(kernel, ...)          \
-  if (kernel::has_avx2) {                      \
-    namespace variant = kernel::with_avx2;     \
-    __VA_ARGS__                                \
-  }                                            \
-  if (kernel::has_avx512) {                    \
-    namespace variant = kernel::with_avx512;   \
-    __VA_ARGS__                                \
+#define FOR_EACH_VARIANT(kernel, ...)        \
+  if (kernel::has_avx2) {                    \
+    namespace variant = kernel::with_avx2;   \
+    __VA_ARGS__                              \
+  }                                          \
+  if (kernel::has_avx512) {                  \
+    namespace variant = kernel::with_avx512; \
+    __VA_ARGS__                              \
   }
 
 namespace {

@@ -152,6 +152,19 @@ TEST_CASE("polishing: more rounds are never worse, and many are better") {
   CHECK(last.statistics.mean_length > 1.03 * plain.statistics.mean_length);
 }
 
+TEST_CASE("polishing: a line that winds round all the surface gives way to those that fill what it leaves") {
+  const double radius = 20, tube = 8, turns = std::sqrt(2.0);
+  const auto mesh = torus(160, 50, radius, tube).mesh();
+  const auto field = field_of(mesh, [&](const Vector& c, const Vector&) {
+    const double out = std::hypot(c.x(), c.y());
+    const Vector around = Vector(-c.y(), c.x(), 0) / out, from_core = c - radius / out * Vector(c.x(), c.y(), 0);
+    return Vector(out * around + turns * around.cross(from_core));
+  });
+  const auto [plain, better] = check_polished(mesh, field, polished(1.2, 20));
+  CHECK(std::ranges::max(plain.lengths) > 10 * plain.statistics.mean_length);
+  CHECK(better.statistics.mean_length > 1.4 * plain.statistics.mean_length);
+}
+
 TEST_CASE("polishing: lines that fill a strip from side to side are left as they are") {
   const auto mesh = grid(12, 9).mesh();
   const auto field = constant_field(mesh, Vector(1, 0.01, 0));

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Compiles the file PECTINATE_KERNEL three times: in the namespace any_processor for registers of 16 bytes, which all
-// have, in with_avx2 for those of 32, and in with_avx512 for twice as many of these and others for masks; registers of 64
-// bytes gain nothing more. PECTINATE_CALL_KERNEL(f, arguments) calls the one that suits the processor at hand. All give
-// the same bits: they do the same to each number, as long as the compiler fuses no multiplication with an addition.
+// have, in with_avx2 for those of 32, and in with_avx512 for twice as many of these and others for masks; registers of
+// 64 bytes gain nothing more. PECTINATE_CALL_KERNEL(f, arguments) calls the one that suits the processor at hand. All
+// give the same bits: they do the same to each number, as long as the compiler fuses no multiplication with an
+// addition.
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
 #define PECTINATE_HAS_VARIANTS
@@ -44,7 +45,7 @@ const bool has_avx2 = __builtin_cpu_supports("avx2"), has_avx512 = __builtin_cpu
 
 #undef PECTINATE_KERNEL
 #ifdef PECTINATE_HAS_VARIANTS
-#define PECTINATE_CALL_KERNEL(function, ...) \
+#define PECTINATE_CALL_KERNEL(function, ...)       \
   (has_avx512 ? with_avx512::function(__VA_ARGS__) \
    : has_avx2 ? with_avx2::function(__VA_ARGS__)   \
               : any_processor::function(__VA_ARGS__))

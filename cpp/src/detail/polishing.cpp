@@ -22,9 +22,8 @@ constexpr double share_of_supports = 0.4, share_of_resting = 0.5;
 /// In mean lengths: to trace longer lines again takes long and gains little. Of a line that is to grow and what it
 /// rests on, together, and of lines that rest on others.
 constexpr double longest_to_grow = 5, longest_resting = 4;
-/// Share of the rounds in which a line much longer than the others, in mean lengths, gives way at one end; how much of
-/// it at most, in mean lengths, and of all of it.
-constexpr double share_of_giving_way = 0.3, least_to_give_way = 5, most_given = 3, most_given_of_all = 0.5;
+/// Share of the rounds in which a line much longer than the others, in mean lengths, gives way; how much of it at most.
+constexpr double share_of_giving_way = 0.3, least_to_give_way = 5, most_given = 0.95;
 /// Ends that lost what they rested on are mended so many times, or the round is undone.
 constexpr int most_mendings = 8;
 /// So many times as many lines as there are may be replaced without getting better, before it goes back to the best.
@@ -202,7 +201,7 @@ std::int32_t Polisher::draw_by_length() {
 // Repair --------------------------------------------------------------------------------------------------------------
 
 /// Takes lines out; the region that they leave.
-FreedRegion Polisher::free(const Numbers& lines, std::vector<ChordPlace> first, bool at_random) {
+FreedRegion Polisher::take_out(const Numbers& lines, std::vector<ChordPlace> first, bool at_random) {
   for (const auto line : lines) {
     note_free(line);
     lines_.take_out(line);
@@ -217,7 +216,7 @@ FreedRegion Polisher::free(const Numbers& lines, std::vector<ChordPlace> first, 
 
 /// Takes lines out and fills what they leave.
 void Polisher::replace(const Numbers& lines, std::vector<ChordPlace> first, bool at_random) {
-  filler_.refill(free(lines, std::move(first), at_random));
+  filler_.refill(take_out(lines, std::move(first), at_random));
 }
 
 /// Where one line is much longer than the others, these are what is left beside it: it leaves an end to them and to
@@ -227,12 +226,12 @@ bool Polisher::let_long_line_give_way() {
   const auto line = draw_by_length();
   const double length = lines_[line].length;
   if (lines_[line].is_closed || length < least_to_give_way * mean_length()) return false;
-  const auto kept = without_end(line, random_.unit() * std::min(most_given * mean_length(), most_given_of_all * length));
+  const auto kept = without_end(line, random_.unit() * most_given * length);
   if (kept.empty()) return false;
   const ChordPlace middle = middle_of(kept);
   Numbers chosen{line};
   choose_resting(chosen);
-  auto region = free(chosen, {}, true);
+  auto region = take_out(chosen, {}, true);
   const auto place_holder = lines_.new_number();
   Polyline polyline;
   polyline.follow(sheet_, kept, false);
@@ -294,7 +293,6 @@ std::vector<std::int32_t> Polisher::loose_lines() const {
   }
   return loose;
 }
-
 
 // Acceptance ----------------------------------------------------------------------------------------------------------
 

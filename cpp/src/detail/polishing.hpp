@@ -53,7 +53,7 @@ class Polisher {
   std::int32_t draw_by_length();
   bool rests_on(std::int32_t line, std::int32_t triangle, const Numbers& supports) const;
 
-  FreedRegion free(const Numbers& lines, std::vector<ChordPlace> first, bool at_random);
+  FreedRegion take_out(const Numbers& lines, std::vector<ChordPlace> first, bool at_random);
   void replace(const Numbers& lines, std::vector<ChordPlace> first, bool at_random);
   bool let_long_line_give_way();
   std::vector<Chord> without_end(std::int32_t line, double length);
